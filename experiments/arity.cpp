@@ -287,24 +287,6 @@ Claim judge_scene(const SceneCosts& costs) {
   return claim;
 }
 
-/// Plots one line per arity and one point per case, relative to eight children.
-template <class Number>
-Plot relative_plot(const std::string& title, const std::string& label, const std::vector<Case>& all,
-                   const Sums& sums, Number&& number) {
-  Plot plot{title, "", label, false, false};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    std::string name = all[i].name.substr(0, all[i].name.find(" of "));
-    plot.x_names.emplace_back(static_cast<double>(i), std::move(name));
-  }
-  for (std::size_t k = 0; k < arities.size(); ++k) {
-    Series series{fmt::format("{} children", arities[k]), {}, Series::Style::points, static_cast<int>(k)};
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      series.points.emplace_back(static_cast<double>(i), number(sums[i][k]) / number(sums[i][2]));
-    plot.series.push_back(std::move(series));
-  }
-  return plot;
-}
-
 Table objects_table() {
   return {"arity_objects",
           "Trees of objects",
@@ -382,21 +364,10 @@ Report run_arity(const ArityOptions& options, bool show_progress) {
       {"steps", fmt::format("times are the minimum of {}", options.frames)}};
   report.claims = {judge_better(usual), judge_depth(single), judge_colliding_children(single, colliding),
                    judge_scene(scene_costs)};
-  Section of_objects{"Trees of objects", {}};
-  of_objects.blocks.emplace_back(
-      relative_plot("Tests, leaves of one triangle (eight children: 1)", "relative", all, single, tests_of));
-  of_objects.blocks.emplace_back(relative_plot("Tests, leaves of up to 64 triangles (eight children: 1)",
-                                               "relative", all, usual, tests_of));
-  of_objects.blocks.emplace_back(
-      relative_plot("Time of the traversal, leaves of up to 64 triangles (eight children: 1)", "relative",
-                    all, usual, seconds_of_sum));
-  of_objects.blocks.emplace_back(std::move(colliding));
-  of_objects.blocks.emplace_back(std::move(objects));
-  Section of_scene{"Trees of the scene", {}};
-  of_scene.blocks.emplace_back(
-      std::string("Boxes with sides of 0.5 to 1, one per eight units of volume, all in motion."));
-  of_scene.blocks.emplace_back(std::move(scenes));
-  report.sections = {std::move(of_objects), std::move(of_scene)};
+  report.sections = {{"Trees of objects", {}, {std::move(colliding), std::move(objects)}},
+                     {"Trees of the scene",
+                      {"Boxes with sides of 0.5 to 1, one per eight units of volume, all in motion."},
+                      {std::move(scenes)}}};
   return report;
 }
 

@@ -290,7 +290,7 @@ Report run_claims(const ClaimsOptions& options, bool show_progress) {
   for (const auto& [name, measure] : measurements) {
     Finding finding = measure(options);
     report.claims.push_back(std::move(finding.claim));
-    section.blocks.emplace_back(std::move(finding.table));
+    section.tables.push_back(std::move(finding.table));
     work.done(1, name);
   }
   report.sections.push_back(std::move(section));

@@ -104,14 +104,12 @@ int run_experiment(const ExperimentOptions& options) {
     result = run(options);
   }
   const Report& report = *result;
-  const std::string warning = write_report(report, folder);
-  if (!options.quiet) {
-    fmt::print("{}\n", text_of(report));
+  write_report(report, folder);
+  if (!options.quiet) fmt::print("{}\n", text_of(report));
+  const int exit_status = make_page(folder);
+  if (exit_status == cli::exit_done && !options.quiet)
     fmt::print("Written: {}\n", (folder / (report.name + ".html")).string());
-  }
-  if (warning.empty()) return cli::exit_done;
-  fmt::print(stderr, "supple: {}; the tables and the report without plots are written\n", warning);
-  return cli::exit_unusable;
+  return exit_status;
 }
 
 }  // namespace supple::experiments

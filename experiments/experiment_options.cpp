@@ -34,7 +34,7 @@ constexpr const char* footer = R"(Examples:
       Measures single claims of the paper: the cost of one test, the depth of octrees, stability.
 
 Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the
-paper's claims hold. Plots need the program gnuplot. Without it, everything else is written and the exit
+paper's claims hold. The page needs python3 with matplotlib. Without it, the tables are written and the exit
 status is 2. docs/experiments.md describes the experiments.)";
 
 void add_kind(CLI::App& app, ExperimentOptions& options) {

@@ -3,10 +3,8 @@
 #include <filesystem>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "plot.hpp"
 #include "table.hpp"
 
 namespace supple::experiments {
@@ -20,12 +18,11 @@ struct Claim {
   std::string reason;  ///< with the measured numbers
 };
 
-/// A paragraph, a table or a plot.
-using Block = std::variant<std::string, Table, Plot>;
-
+/// The page has plots of some tables between the paragraphs and the tables.
 struct Section {
   std::string heading;
-  std::vector<Block> blocks{};
+  std::vector<std::string> paragraphs{};
+  std::vector<Table> tables{};
 };
 
 /// The report of one experiment.
@@ -44,14 +41,14 @@ const char* name_of(Verdict verdict);
 Verdict verdict_of(bool holds);
 
 std::string text_of(const Report& report);
-/// Makes one page without external resources. `drawings` are the plots of the report, in order; empty
-/// drawings are left out.
-std::string html_of(const Report& report, const std::vector<std::string>& drawings);
 /// Creates a folder if necessary. Throws `Error` when that fails.
 void make_folder(const std::filesystem::path& folder);
 void write_file(const std::filesystem::path& path, const std::string& text);
-/// Writes one CSV file per table and the page into the folder, which is created if necessary. Without
-/// gnuplot, the page has no plots and the function returns a message; otherwise it returns an empty text.
-std::string write_report(const Report& report, const std::filesystem::path& folder);
+/// Writes one CSV file per table, and everything else of the report as JSON, into the folder, which is
+/// created if necessary.
+void write_report(const Report& report, const std::filesystem::path& folder);
+/// Makes the page of the files of a report: calls report.py, which is beside the program. Returns the exit
+/// status of the program. Throws `Error` without Python.
+int make_page(const std::filesystem::path& folder);
 
 }  // namespace supple::experiments

@@ -7,16 +7,11 @@
 #include <cstddef>
 #include <utility>
 
-#include "html.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
 namespace supple::experiments {
 namespace {
-
-bool is_number(const Cell& cell) {
-  return std::holds_alternative<std::uint64_t>(cell) || std::holds_alternative<double>(cell);
-}
 
 /// Counts characters, not bytes: all bytes of UTF-8 except continuation bytes.
 std::size_t width_of(const std::string& text) {
@@ -29,16 +24,12 @@ std::string padded(const std::string& text, std::size_t width, bool to_the_right
   return to_the_right ? blanks + text : text + blanks;
 }
 
-Html::Attributes class_of(bool number) {
-  return number ? Html::Attributes{{"class", "number"}} : Html::Attributes{};
-}
-
 std::string csv_field(const Cell& cell) {
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
   if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
   const auto* text = std::get_if<std::string>(&cell);
   if (text == nullptr) return "";
-  if (text->find_first_of(",\"\n\r") == std::string::npos) return *text;
+  if (text->find_first_of(",\"\n\r#") == std::string::npos) return *text;
   std::string quoted = "\"";
   for (const char c : *text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + '"';
@@ -119,7 +110,12 @@ CsvText parse_csv(std::string_view text) {
   bool is_quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (c == '"') {
+    if (c == '#' && !is_quoted && row.size() == 1 && row.back().empty()) {
+      const std::size_t end = text.find('\n', i);
+      if (end == std::string_view::npos) break;
+      result.length = end + 1;
+      i = end;
+    } else if (c == '"') {
       // A quote that follows the end of a quoted part stands for a quote.
       if (!is_quoted && i > 0 && text[i - 1] == '"') row.back() += c;
       is_quoted = !is_quoted;
@@ -134,31 +130,6 @@ CsvText parse_csv(std::string_view text) {
     }
   }
   return result;
-}
-
-std::string html_of(const Table& table) {
-  Html html;
-  html.open("div", {{"class", "table"}});
-  html.open("table");
-  html.element("caption", table.caption);
-  html.open("thead");
-  html.open("tr");
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const bool number = !table.rows.empty() && is_number(table.rows.front()[c]);
-    html.element("th", table.columns[c].heading, class_of(number));
-  }
-  html.close();
-  html.close();
-  html.open("tbody");
-  for (const auto& row : table.rows) {
-    html.open("tr");
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const bool number = is_number(row[c]) || std::holds_alternative<std::monostate>(row[c]);
-      html.element("td", text_of(row[c], table.columns[c]), class_of(number));
-    }
-    html.close();
-  }
-  return html.finish();
 }
 
 }  // namespace supple::experiments

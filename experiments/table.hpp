@@ -34,13 +34,13 @@ struct Table {
 std::string text_of(const Cell& cell, const Column& column);
 /// Aligned columns under the caption.
 std::string text_of(const Table& table);
-/// CSV as in RFC 4180, with line feeds. Measured numbers have enough digits to read back the same number.
+/// CSV as in RFC 4180, with line feeds, and quotes around texts with #, which begins a comment. Measured
+/// numbers have enough digits to read back the same number.
 std::string csv_of(const Table& table);
 /// One line of CSV with its line feed.
 std::string csv_of(const std::vector<Cell>& row);
-std::string html_of(const Table& table);
 
-/// The fields of CSV text, line by line, with the header.
+/// The fields of CSV text, line by line, with the names of the columns and without comments.
 struct CsvText {
   std::vector<std::vector<std::string>> rows{};
   std::size_t length = 0;  ///< of the complete lines; a line without line feed at the end is left out

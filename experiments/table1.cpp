@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
-#include <span>
 #include <string>
 #include <utility>
 
 #include "input_stream.hpp"
+#include "machine.hpp"
 #include "paper_table.hpp"
 #include "supple/error.hpp"
 #include "table1_claims.hpp"
@@ -77,52 +76,9 @@ Table means_table(const std::vector<Runs>& all, bool by_clock) {
   return table;
 }
 
-/// Plots runs as points, ours and the paper's, side by side for each number of objects.
-Plot counts_plot(const std::string& title, const std::vector<Runs>& all, const Phase& phase) {
-  constexpr double apart = 3;  // two numbers of objects; the series of one number are 0.3 apart
-  Plot plot{title, "objects", "collisions in ten minutes", false, true};
-  std::set<std::uint32_t> sizes;
-  for (const Runs& runs : all) {
-    if (is_of_table(runs)) sizes.insert(runs.scene.objects);
-  }
-  for (const std::uint32_t size : sizes)
-    plot.x_names.emplace_back(apart * static_cast<double>(plot.x_names.size()), fmt::format("{}", size));
-  std::vector<Series> ours, theirs;
-  for (const Runs& runs : all) {
-    if (!is_of_table(runs)) continue;
-    const double x =
-        apart * static_cast<double>(std::distance(sizes.begin(), sizes.find(runs.scene.objects)));
-    const auto add = [&](std::vector<Series>& group, const char* whose, std::span<const double> numbers,
-                         double factor) {
-      const std::string label = fmt::format("{}, {}", word_of(runs.volume), whose);
-      auto series =
-          std::find_if(group.begin(), group.end(), [&](const Series& s) { return s.label == label; });
-      if (series == group.end()) series = group.insert(series, {label, {}, Series::Style::points});
-      for (const double number : numbers) series->points.emplace_back(x, number * factor);
-    };
-    add(ours, "ours", runs.numbers(phase.member), 600 / runs.run_seconds);
-    if (const PaperRow* const paper = paper_row_of(runs)) add(theirs, "the paper's", paper->*phase.paper, 1);
-  }
-  plot.series = std::move(ours);
-  plot.series.insert(plot.series.end(), theirs.begin(), theirs.end());
-  const double middle = (static_cast<double>(plot.series.size()) - 1) / 2;
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    for (auto& point : plot.series[i].points) point.first += 0.3 * (static_cast<double>(i) - middle);
-  }
-  return plot;
-}
-
 Section section_of(const std::string& heading, const std::string& paragraph, const std::vector<Runs>& all,
                    std::uint64_t first_seed, bool by_clock) {
-  Section section{heading, {paragraph}};
-  if (std::any_of(all.begin(), all.end(), is_of_table)) {
-    const char* const suffix = by_clock ? ", by the clock" : "";
-    section.blocks.emplace_back(counts_plot(fmt::format("Broad phase{}", suffix), all, phases[0]));
-    section.blocks.emplace_back(counts_plot(fmt::format("Narrow phase{}", suffix), all, phases[1]));
-  }
-  section.blocks.emplace_back(means_table(all, by_clock));
-  section.blocks.emplace_back(runs_table(all, first_seed, by_clock));
-  return section;
+  return {heading, {paragraph}, {means_table(all, by_clock), runs_table(all, first_seed, by_clock)}};
 }
 
 std::string paragraph_of_clock(const std::vector<Runs>& clock) {
@@ -152,7 +108,7 @@ void check_options(const Table1Options& options, const fs::path& folder, bool re
   const std::string text = csv_of(table);
   if (!resume) {
     make_folder(folder);
-    write_file(path, text);
+    write_file(path, csv_head() + text);
     return;
   }
   if (!fs::exists(path))
@@ -218,7 +174,7 @@ std::optional<Report> run_table1(const Table1Options& options, const fs::path& f
   if (!clock.empty())
     report.sections.push_back(section_of("Counted by the clock, as the paper did", paragraph_of_clock(clock),
                                          clock, options.seed, true));
-  report.sections.push_back({"The paper's own numbers", {paper_arithmetic()}});
+  report.sections.push_back({"The paper's own numbers", {}, {paper_arithmetic()}});
   return report;
 }
 

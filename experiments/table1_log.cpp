@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "input_stream.hpp"
+#include "machine.hpp"
 #include "supple/error.hpp"
 #include "table1_runs.hpp"
 
@@ -90,12 +91,12 @@ Table runs_table(const std::vector<Runs>& all, std::uint64_t first_seed, bool by
 RunLog::RunLog(const fs::path& folder, bool by_clock, bool resume) : by_clock_(by_clock) {
   const Table table = empty_table(by_clock);
   const fs::path path = folder / (table.name + ".csv");
-  const std::string header = csv_of(table);
+  const std::string header = csv_head() + csv_of(table);
   std::size_t length = 0;
   if (resume && fs::exists(path)) {
     const std::string text = cli::read_text(path);
     const CsvText csv = parse_csv(text);
-    if (csv.length > 0 && text.rfind(header, 0) != 0)
+    if (!csv.rows.empty() && csv.rows.front() != parse_csv(header).rows.front())
       throw Error(
           fmt::format("{}: has other columns than this program writes; leave out --resume to start "
                       "again",

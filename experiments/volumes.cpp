@@ -292,43 +292,14 @@ Table summary_table(const std::string& name, const std::string& caption, const s
   return table;
 }
 
-/// One line per variant and one point per case, relative to the first variant.
-template <class Number>
-Plot relative_plot(const std::string& title, const std::vector<Case>& cases,
-                   const std::vector<Variant>& variants, const Costs& costs, bool logarithmic,
-                   const Number& number) {
-  Plot plot{title, "", "relative", false, logarithmic};
-  for (std::size_t i = 0; i < cases.size(); ++i)
-    plot.x_names.emplace_back(static_cast<double>(i), cases[i].name.substr(0, cases[i].name.find(",")));
-  for (std::size_t v = 1; v < variants.size(); ++v) {
-    Series series{variants[v].name, {}, Series::Style::points};
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      const auto of_boxes = static_cast<double>(number(costs[i][0]));
-      if (of_boxes > 0)
-        series.points.emplace_back(static_cast<double>(i),
-                                   static_cast<double>(number(costs[i][v])) / of_boxes);
-    }
-    plot.series.push_back(std::move(series));
-  }
-  return plot;
-}
-
 Section section_of(const std::string& heading, const std::string& measure, const std::vector<Case>& cases,
                    const std::vector<Variant>& variants, const Costs& costs, Table all,
                    const std::string& name) {
-  Section section{heading, {}};
-  section.blocks.emplace_back(summary_table(
+  Table summary = summary_table(
       name + "_summary",
       fmt::format("Sizes and times: geometric means over the cases; counts: sums; {}: 1", measure), variants,
-      cases, costs));
-  section.blocks.emplace_back(relative_plot(fmt::format("False candidates ({}: 1)", measure), cases, variants,
-                                            costs, false,
-                                            [](const Cost& c) { return c.false_candidates(); }));
-  section.blocks.emplace_back(relative_plot(fmt::format("Time of refit and query ({}: 1)", measure), cases,
-                                            variants, costs, true,
-                                            [](const Cost& c) { return c.seconds(); }));
-  section.blocks.emplace_back(std::move(all));
-  return section;
+      cases, costs);
+  return {heading, {}, {std::move(summary), std::move(all)}};
 }
 
 }  // namespace
