@@ -5,57 +5,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <span>
+#include <nlohmann/json.hpp>
 
 #include "exit_status.hpp"
-#include "json_writer.hpp"
 #include "machine.hpp"
 #include "output_file.hpp"
 #include "supple/error.hpp"
 
 namespace supple::experiments {
-namespace {
-
 namespace fs = std::filesystem;
-
-void write_pairs(cli::JsonWriter& json, const char* name,
-                 const std::vector<std::pair<std::string, std::string>>& pairs) {
-  json.key(name);
-  json.begin_object();
-  for (const auto& [key, value] : pairs) json.member(key.c_str(), value);
-  json.end_object();
-}
-
-void write_claims(cli::JsonWriter& json, const std::vector<Claim>& claims) {
-  json.key("claims");
-  json.begin_array();
-  for (const Claim& claim : claims) {
-    json.begin_object();
-    json.member("paper", claim.paper);
-    json.member("verdict", name_of(claim.verdict));
-    json.member("reason", claim.reason);
-    json.end_object();
-  }
-  json.end_array();
-}
-
-void write_table(cli::JsonWriter& json, const Table& table) {
-  json.begin_object();
-  json.member("name", table.name);
-  json.member("caption", table.caption);
-  json.key("columns");
-  json.begin_array();
-  for (const Column& column : table.columns) {
-    json.begin_object();
-    json.member("heading", column.heading);
-    json.member("digits", static_cast<std::uint32_t>(column.digits));
-    json.end_object();
-  }
-  json.end_array();
-  json.end_object();
-}
-
-}  // namespace
 
 const char* name_of(Verdict verdict) {
   return verdict == Verdict::holds           ? "Holds. "
@@ -93,34 +51,28 @@ void write_file(const fs::path& path, const std::string& text) {
 }
 
 void write_report(const Report& report, const fs::path& folder) {
+  using Json = nlohmann::ordered_json;
   make_folder(folder);
-  cli::JsonWriter json((folder / (report.name + "_report.json")).string());
-  json.begin_object();
-  json.member("name", report.name);
-  json.member("title", report.title);
-  json.member("summary", report.summary);
-  write_pairs(json, "parameters", report.parameters);
-  write_pairs(json, "machine", describe_machine());
-  write_claims(json, report.claims);
-  json.key("sections");
-  json.begin_array();
+  Json json{{"name", report.name}, {"title", report.title}, {"summary", report.summary}};
+  for (const auto& [name, value] : report.parameters) json["parameters"][name] = value;
+  for (const auto& [name, value] : describe_machine()) json["machine"][name] = value;
+  for (const Claim& claim : report.claims)
+    json["claims"].push_back(
+        {{"paper", claim.paper}, {"verdict", name_of(claim.verdict)}, {"reason", claim.reason}});
   for (const Section& section : report.sections) {
-    json.begin_object();
-    json.member("heading", section.heading);
-    json.key("paragraphs");
-    json.value(std::span(section.paragraphs));
-    json.key("tables");
-    json.begin_array();
+    Json tables = Json::array();
     for (const Table& table : section.tables) {
       write_file(folder / (table.name + ".csv"), csv_head() + csv_of(table));
-      write_table(json, table);
+      Json columns = Json::array();
+      for (const Column& column : table.columns)
+        columns.push_back({{"heading", column.heading}, {"digits", column.digits}});
+      tables.push_back({{"name", table.name}, {"caption", table.caption}, {"columns", std::move(columns)}});
     }
-    json.end_array();
-    json.end_object();
+    json["sections"].push_back(
+        {{"heading", section.heading}, {"paragraphs", section.paragraphs}, {"tables", std::move(tables)}});
   }
-  json.end_array();
-  json.end_object();
-  json.close();
+  write_file(folder / (report.name + "_report.json"),
+             json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
 int make_page(const fs::path& folder) {
