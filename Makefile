@@ -5,7 +5,7 @@ BASE ?= HEAD
 
 SECONDS ?= 30
 
-.PHONY: help demo program test build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
+.PHONY: help demo program experiment test build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
 
 help:
 	@echo 'make demo     build the program, drop a cloth over a ball, collide nine objects, write a page that shows them'
@@ -38,6 +38,10 @@ demo: program
 program: dependencies
 	cmake --preset release
 	cmake --build --preset release -j $(JOBS) --target supple_cli
+
+# The program of the paper's experiments. The generated documents have its options, too.
+experiment: program
+	cmake --build --preset release -j $(JOBS) --target supple_experiment
 
 # Without the tests that compile the library again.
 test: build
@@ -81,7 +85,7 @@ bench-kernels: dependencies
 bench-compare: dependencies
 	benchmarks/contest_compare.py $(BASE) $(CONTEST)
 
-check: program
+check: experiment
 	tools/install_dependencies.sh --ci
 	tools/format.sh --check
 	tools/check_include_order.py
@@ -102,7 +106,7 @@ figures: $(patsubst %.dot,%.svg,$(wildcard docs/figures/*.dot))
 docs/figures/%.svg: docs/figures/%.dot
 	dot -Tsvg $< -o $@
 
-docs: program
+docs: experiment
 	tools/install_dependencies.sh --ci
 	tools/make_api.py
 	tools/generate_docs.sh build/release/bin/supple

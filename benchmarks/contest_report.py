@@ -7,146 +7,28 @@ TABLE.csv is a file of benchmarks/results or the results.csv of a run. The page 
 """
 
 import csv
-import html
-import math
 import pathlib
 import sys
 
 from contest_targets import growth_points, judged
 
-# Distinguishable on white and on black, and for most people with colour vision deficiency.
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "experiments"))
+from report import bar_plot, line_plot, page, rounded, table  # noqa: E402
+
 COLORS = {"Supple": "#0077bb", "Embree": "#ee7733", "CGAL": "#009988", "FCL": "#cc3311", "Bullet": "#9467bd",
           "ODE": "#b8860b", "baseline sweep": "#888888", "baseline grid": "#555577"}
 STAGES = {"update": "#0077bb", "traversal": "#33aa77", "triangle tests": "#ee7733", "order and events": "#999999"}
 REFIT = {"handing over": "#33aa77", "refit": "#0077bb"}
 OTHER_COLOR = "#888888"
 
-STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; max-width: 68rem; margin: 2rem auto; padding: 0 1rem;
-  color: #1a1a1a; background: #fff; }
-table { border-collapse: collapse; margin: 0.6rem 0 1.4rem; font-variant-numeric: tabular-nums; }
-th, td { padding: 0.18rem 0.7rem 0.18rem 0; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; }
-th:first-child, td:first-child, td.text, th.text { text-align: left; }
-.aim { color: #00705a; font-weight: 600; } .reach { color: #0064a0; } .missed { color: #b32400; }
-td.text { white-space: normal; }
-svg { display: block; max-width: 100%; height: auto; margin: 0.8rem 0; }
-svg text { font: 12px system-ui, sans-serif; fill: currentColor; } svg .title { font-size: 14px; font-weight: 600; }
-@media (prefers-color-scheme: dark) {
-  body { color: #e4e4e4; background: #181818; } .aim { color: #4fd0b0; } .reach { color: #6ab7ee; }
-  .missed { color: #ff8a66; }
-}
-"""
+STYLE = ".aim { color: var(--holds); font-weight: 600; } .reach { color: #0a7bbd; } .missed { color: var(--fails); }"
 
 
 def color_of(name):
     return COLORS.get(name.split(",")[0], OTHER_COLOR)
 
 
-def rounded(value):
-    """Three significant digits with grouped thousands."""
-    if value == 0:
-        return "0"
-    digits = 2 - math.floor(math.log10(abs(value)))
-    return f"{round(value, digits):,.{max(digits, 0)}f}"
-
-
-def escaped(text):
-    return html.escape(str(text))
-
-
-# --- drawing ---
-
-
-def svg(width, height, title, body):
-    return (f'<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img">'
-            f'<text class="title" x="0" y="16">{escaped(title)}</text>{body}</svg>')
-
-
-def text(x, y, words, anchor="start"):
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escaped(words)}</text>'
-
-
-def log_ticks(low, high):
-    """Powers of ten in the range, also times 2 and 5 if the range is small."""
-    first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
-    steps = (1,) if last - first > 3 else (1, 2, 5)
-    ticks = [step * 10.0**power for power in range(first, last + 1) for step in steps]
-    return [tick for tick in ticks if low <= tick <= high]
-
-
-def short(value):
-    for limit, suffix in ((1e6, " M"), (1e3, " k")):
-        if value >= limit:
-            return f"{value / limit:g}{suffix}"
-    return f"{value:g}"
-
-
-def line_plot(title, x_label, y_label, series):
-    """Draws logarithmic axes; series are (name, color, dashed, [(x, y)...])."""
-    width, height, left, top, right, bottom = 800, 390, 62, 46, 210, 44
-    xs = [x for _, _, _, points in series for x, _ in points]
-    ys = [y for _, _, _, points in series for _, y in points]
-    low_x, high_x = min(xs) / 1.2, max(xs) * 1.2
-    low_y, high_y = min(ys) / 1.5, max(ys) * 1.5
-    at_x = lambda x: left + (width - left - right) * math.log(x / low_x) / math.log(high_x / low_x)
-    at_y = lambda y: height - bottom - (height - top - bottom) * math.log(y / low_y) / math.log(high_y / low_y)
-    body = ""
-    for tick in log_ticks(low_y, high_y):
-        body += (f'<line x1="{left}" x2="{width - right}" y1="{at_y(tick):.1f}" y2="{at_y(tick):.1f}" '
-                 f'stroke="#8885" stroke-width="0.6"/>' + text(left - 6, at_y(tick) + 4, short(tick), "end"))
-    for tick in log_ticks(low_x, high_x):
-        body += (f'<line y1="{top}" y2="{height - bottom}" x1="{at_x(tick):.1f}" x2="{at_x(tick):.1f}" '
-                 f'stroke="#8885" stroke-width="0.6"/>' + text(at_x(tick), height - bottom + 16, short(tick), "middle"))
-    body += text((left + width - right) / 2, height - 6, x_label, "middle") + text(left, top - 8, y_label, "end")
-    for number, (name, color, dashed, points) in enumerate(series):
-        path = " ".join(f"{at_x(x):.1f},{at_y(y):.1f}" for x, y in points)
-        dash = ' stroke-dasharray="5 4"' if dashed else ""
-        body += f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2"{dash}/>'
-        if not dashed:
-            body += "".join(f'<circle cx="{at_x(x):.1f}" cy="{at_y(y):.1f}" r="3" fill="{color}"/>' for x, y in points)
-        y = top + 14 + 18 * number
-        body += (f'<line x1="{width - right + 12}" x2="{width - right + 34}" y1="{y - 4}" y2="{y - 4}" '
-                 f'stroke="{color}" stroke-width="2.5"{dash}/>' + text(width - right + 40, y, name))
-    return svg(width, height, title, body)
-
-
-def bar_plot(title, bars):
-    """Draws bars (name, [(part, color, value)...]); parts are stacked, with a legend if there are several."""
-    left, right, width = 150, 80, 760
-    height = 30 + 22 * len(bars) + 26
-    largest = max(sum(value for _, _, value in parts) for _, parts in bars)
-    scale = (width - left - right) / largest
-    body, named = "", {}
-    for number, (name, parts) in enumerate(bars):
-        y, x = 30 + 22 * number, left
-        body += text(left - 8, y + 13, name, "end")
-        for part, color, value in parts:
-            body += f'<rect x="{x:.1f}" y="{y}" width="{value * scale:.1f}" height="16" fill="{color}"/>'
-            x += value * scale
-            if part:
-                named[part] = color
-        body += text(x + 6, y + 13, rounded(sum(value for _, _, value in parts)))
-    x = left
-    for part, color in named.items():
-        y = 30 + 22 * len(bars) + 6
-        body += f'<rect x="{x}" y="{y}" width="12" height="12" fill="{color}"/>' + text(x + 17, y + 10, part)
-        x += 40 + 7 * len(part)
-    return svg(width, height, title, body)
-
-
 # --- sections ---
-
-
-def table(heading, rows, text_columns=1):
-    """Makes a table; cells may be (text, class)."""
-    def cell(tag, value, column):
-        words, name = value if isinstance(value, tuple) else (value, "")
-        classes = " ".join(filter(None, [name, "text" if column < text_columns else ""]))
-        return f'<{tag}{f" class={chr(34)}{classes}{chr(34)}" if classes else ""}>{escaped(words)}</{tag}>'
-
-    lines = ["<table>", "<tr>" + "".join(cell("th", name, i) for i, name in enumerate(heading)) + "</tr>"]
-    lines += ["<tr>" + "".join(cell("td", value, i) for i, value in enumerate(row)) + "</tr>" for row in rows]
-    return "\n".join(lines + ["</table>"])
 
 
 def rows_of_table(judge):
@@ -172,12 +54,12 @@ def summary_table(rows):
         lines.append([name, ", ".join(dict.fromkeys(row["against"] for row in group)), f"{min(ratios):.2f}",
                       f"{max(ratios):.2f}", f"{bound}{group[0]['reach']:g}", f"{bound}{group[0]['aim']:g}", ", ".join(met)])
     return table(["workload", "against", "lowest", "highest", "reach", "aim", "cells that reach the aim, reach, miss"], lines,
-                 2)
+                 range(2))
 
 
 def judgement_table(judge):
     heading, *lines = rows_of_table(judge)
-    return table(heading, [[*line[:-1], (line[-1], line[-1])] for line in lines], 3)
+    return table(heading, [[*line[:-1], (line[-1], line[-1])] for line in lines], range(3))
 
 
 def times_table(cells):
@@ -189,13 +71,13 @@ def times_table(cells):
                          rounded(c["wall_ms"][1]), c["frames"], f"{c['pairs']:,}"])
         if cell["skipped"]:
             rows.append([cell["cell"], "left out: " + cell["skipped"], "", "", "", "", ""])
-    return table(["cell", "contestant", "CPU ms", "quartiles", "wall ms", "frames", "pairs"], rows, 2)
+    return table(["cell", "contestant", "CPU ms", "quartiles", "wall ms", "frames", "pairs"], rows, range(2))
 
 
 def values_table(cells):
     rows = [[cell["cell"], name, rounded(value)] for cell in cells for name, value in cell["values"].items()
             if name != "triangles" or not cell["contestants"]]
-    return table(["cell", "what", "value"], rows, 2) if rows else ""
+    return table(["cell", "what", "value"], rows, range(2)) if rows else ""
 
 
 def box_plots(cells):
@@ -207,9 +89,10 @@ def box_plots(cells):
             if parts[:2] == ["A", field] and len(parts) == 3:
                 for c in cell["contestants"]:
                     series.setdefault(c["name"], []).append((int(parts[2]), c["cpu_ms"][1]))
-        lines = [(name, color_of(name), False, sorted(points)) for name, points in series.items()]
-        if any(len(points) > 1 for _, _, _, points in lines):
-            drawings.append(line_plot(f"A, {field}: one frame", "boxes", "ms", lines))
+        if any(len(points) > 1 for points in series.values()):
+            curves = {name: sorted(points) for name, points in series.items()}
+            drawings.append(line_plot(f"A, {field}: one frame", "boxes", "milliseconds of processor time", curves,
+                                      colors={name: color_of(name) for name in curves}))
     return drawings
 
 
@@ -230,15 +113,14 @@ def stage_bars(cell):
 
 
 def growth_plot(series):
-    palette = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#9467bd"]
-    lines = [(name, palette[i % len(palette)], False, points) for i, (name, points) in enumerate(series)]
     first = series[0][1]
-    lines.append(("linear", OTHER_COLOR, True, [first[0], (first[-1][0], first[0][1] * first[-1][0] / first[0][0])]))
-    return line_plot("Growth of Supple's frame", "objects or triangles", "ms", lines)
+    linear = [first[0], (first[-1][0], first[0][1] * first[-1][0] / first[0][0])]
+    return line_plot("Growth of Supple's frame", "objects or triangles", "milliseconds of processor time",
+                     {**dict(series), "linear": linear}, dashed=["linear"])
 
 
 def bars_of(cells, prefix, title):
-    return [bar_plot(f"{title}{cell['cell'].removeprefix(prefix)}: ms of processor time per frame", stage_bars(cell))
+    return [bar_plot(title + cell["cell"].removeprefix(prefix), "milliseconds of processor time per frame", stage_bars(cell))
             for cell in cells if cell["cell"].startswith(prefix) and cell["contestants"]]
 
 
@@ -246,8 +128,7 @@ def html_of(about, cells):
     """The complete page."""
     judge = judged(cells)
     growth = growth_points(judge)
-    parts = ["<h1>Supple against others</h1>", table(["this run", ""], list(about.items()), 2)]
-    parts += ["<h2>Targets and results</h2>",
+    parts = [table(["this run", ""], about.items(), range(2)), "<h2>Targets and results</h2>",
               "<p>Ratios of medians in this run. Where the bound is ≥, the ratio is how many times faster Supple is than "
               "the best other contestant of the cell. docs/performance.md explains the workloads and the words.</p>",
               summary_table(judge.rows), "<h2>Cell by cell</h2>", judgement_table(judge)]
@@ -261,8 +142,7 @@ def html_of(about, cells):
         parts += ["<h2>Growth</h2>", growth_plot(growth)]
     parts += bars_of(cells, "limits/refit/", "Refit, triangles: ")
     parts += ["<h2>All times</h2>", times_table(cells), values_table(cells)]
-    return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"/><title>Supple against others</title>'
-            f"<style>{STYLE}</style></head><body>\n" + "\n".join(parts) + "\n</body></html>\n")
+    return page("Supple against others", parts, STYLE)
 
 
 # --- the table ---

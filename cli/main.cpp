@@ -1,27 +1,18 @@
-#include <fcntl.h>
-#include <fmt/core.h>
-#include <hdf5.h>
+#include <unistd.h>
 
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
-#include <new>
-#include <stdexcept>
-#include <system_error>
+#include <string_view>
+#include <vector>
 
 #include "ccd_queries.hpp"
 #include "detect.hpp"
 #include "diff.hpp"
-#include "exit_status.hpp"
-#include "experiments/experiment.hpp"
 #include "info.hpp"
 #include "options.hpp"
-#include "output_file.hpp"
 #include "query.hpp"
+#include "run_program.hpp"
 #include "simulate.hpp"
-#include "text.hpp"
+#include "supple/error.hpp"
 #include "view.hpp"
 
 namespace supple::cli {
@@ -41,47 +32,27 @@ int run(const CommandLine& line) {
       return run_query(line.query);
     case CommandLine::Command::ccd_queries:
       return run_ccd_queries(line.ccd_queries);
-    case CommandLine::Command::experiment:
-      return experiments::run_experiment(line.experiment);
     case CommandLine::Command::diff:
       return run_diff(line.diff);
+    case CommandLine::Command::experiment:  // another program
     case CommandLine::Command::exit:
       break;
   }
   return line.exit_status;
 }
 
-/// Opens /dev/null in place of standard streams that the caller has closed. Otherwise the first files that
-/// the program opens would be these streams, and messages would overwrite them.
-void open_closed_streams() {
-  for (const int stream : {0, 1, 2}) {
-    if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", O_RDWR) != stream) std::abort();
-  }
-}
-
-/// For the time in which the input is read, and nothing was written yet: Interruption replaces it then.
-extern "C" void end_at_signal(int signal) {
-  std::_Exit(exit_interrupted + signal);
-}
-
-int report_lack_of_memory() {
-  // Without a buffer, so that this needs no memory.
-  std::fputs("supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n", stderr);
-  return exit_unusable;
-}
-
-/// Libraries end the program where memory runs out in functions that must not throw. Then there is nothing to
-/// clean up: recordings are valid at any moment.
-[[noreturn]] void terminate() {
-  try {
-    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
-  } catch (const std::bad_alloc&) {
-    std::_Exit(report_lack_of_memory());
-  } catch (const std::exception& error) {  // a fault of the program
-    std::fprintf(stderr, "supple: %s\n", error.what());
-  } catch (...) {
-  }
-  std::abort();
+/// Replaces this process by the program `supple-experiment`, which is beside this program or in PATH. Throws
+/// `Error` when it is in neither.
+[[noreturn]] void run_experiments(char** arguments) {
+  char name[] = "supple-experiment";
+  std::error_code unknown;
+  const auto beside = std::filesystem::read_symlink("/proc/self/exe", unknown).replace_filename(name);
+  arguments[0] = name;
+  execv(beside.c_str(), arguments);
+  execvp(name, arguments);
+  throw Error(
+      "the program supple-experiment is neither beside this program nor in PATH; build it by: cmake --build "
+      "--preset release --target supple_experiment");
 }
 
 }  // namespace
@@ -89,38 +60,11 @@ int report_lack_of_memory() {
 
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
-  open_closed_streams();
-  std::set_terminate(terminate);
-  // A limit of the file size (ulimit -f) is then an error of writing, as a full disk is.
-  std::signal(SIGXFSZ, SIG_IGN);
-  for (const int signal : {SIGINT, SIGTERM}) {
-    if (std::signal(signal, end_at_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
-  }
-  // The program closes all recordings before it exits. Without this call, HDF5 would report handles that a
-  // damaged recording left open to standard error.
-  H5dont_atexit();
-  // The program reports what fails; HDF5 must not print its own messages.
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  try {
-    const int exit_status = run(parse_command_line(argument_count, arguments));
-    OutputFile("-").close();
-    return exit_status;
-  } catch (const std::bad_alloc&) {
-    return report_lack_of_memory();
-  } catch (const std::length_error&) {
-    return report_lack_of_memory();  // an array that no memory can hold
-  } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "supple: {}: {}; check the path and who may use it\n",
-               supple::one_line(error.path1().string()), error.code().message());
-    return exit_unusable;
-  } catch (const std::system_error& error) {
-    const bool is_thread = error.code() == std::errc::resource_unavailable_try_again;
-    fmt::print(stderr, "supple: {}\n",
-               is_thread ? "the system refuses to create a thread; raise its limits (ulimit -u, ulimit -v)"
-                         : supple::one_line(error.what()));
-    return exit_unusable;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "supple: {}\n", supple::one_line(error.what()));
-    return exit_unusable;
-  }
+  return run_program([&] {
+    const std::string_view first = argument_count > 1 ? arguments[1] : "";
+    if (first == "experiment") run_experiments(arguments + 1);
+    // The documents describe the options of all commands, also those of experiments.
+    if (first == "--generate") run_experiments(arguments);
+    return run(parse_command_line(argument_count, arguments));
+  });
 }

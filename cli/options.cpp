@@ -17,7 +17,6 @@
 
 #include "documents.hpp"
 #include "exit_status.hpp"
-#include "experiments/experiment_options.hpp"
 #include "help_footers.hpp"
 #include "option_groups.hpp"
 #include "option_kinds.hpp"
@@ -375,7 +374,8 @@ int print_usage_error(const CLI::App& program, const CLI::ParseError& error) {
 
 }  // namespace
 
-CommandLine parse_command_line(int argument_count, const char* const* arguments) {
+CommandLine parse_command_line(int argument_count, const char* const* arguments,
+                               const std::function<void(CLI::App&, Dependences&)>& add_options) {
   CommandLine result;
   CLI::App program("Finds every collision between deforming triangle meshes, exactly.", "supple");
   program.footer(program_footer);
@@ -394,7 +394,9 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments)
   const CLI::App* query = add_query(program, result.query, dependences);
   const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
   add_diff(program, result.diff);
-  const CLI::App* experiment = experiments::add_experiment(program, result.experiment, dependences);
+  CLI::App* const experiment = program.add_subcommand(
+      "experiment", "Repeat the paper's experiments and report which of its claims hold");
+  if (add_options) add_options(*experiment, dependences);
   try {
     program.parse(argument_count, arguments);
     if (!document.empty()) {

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "experiments/experiment.hpp"
 #include "inputs.hpp"
 #include "json_report.hpp"
 #include "query_file.hpp"
@@ -15,7 +15,13 @@
 #include "session/session.hpp"
 #include "supple/option_descriptions.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace supple::cli {
+
+struct Dependence;
 
 /// Questions of `supple query`.
 enum class SceneQuery : std::uint8_t { closest, inside, rays, distance };
@@ -142,12 +148,13 @@ struct CommandLine {
   InfoOptions info;
   QueryOptions query;
   CcdQueriesOptions ccd_queries;
-  experiments::ExperimentOptions experiment;
   DiffOptions diff;
 };
 
 /// Prints help, version and generated documents to standard output, and a usage error as one line to standard
-/// error.
-CommandLine parse_command_line(int argument_count, const char* const* arguments);
+/// error. The program of the experiments adds their options to the command `experiment`.
+CommandLine parse_command_line(
+    int argument_count, const char* const* arguments,
+    const std::function<void(CLI::App& experiment, std::vector<Dependence>& dependences)>& add_options = {});
 
 }  // namespace supple::cli

@@ -22,7 +22,7 @@ fork_point() {
 
 base=${1:-$(fork_point)}
 changed=$(git diff --name-only "$base" --)
-visible=$(grep -E '^(include|src|cli|formats|recording)/' <<<"$changed" | head -n 1 || true)
+visible=$(grep -E '^(include|src|cli|experiments|formats|recording)/' <<<"$changed" | head -n 1 || true)
 if [ -n "$visible" ] && ! grep -qx 'CHANGELOG.md' <<<"$changed"; then
   echo "CHANGELOG.md: no entry since $(git rev-parse --short "$base") although $visible changed; add one under [Unreleased]" >&2
   exit 1

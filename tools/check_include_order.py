@@ -6,9 +6,10 @@ usage: check_include_order.py [ROOT]
 A folder of src/supple includes only from itself and from the folders before it in LAYERS. An include of an
 internal header contains its folder ("core/parallel.hpp"). COMPONENTS has the limits of the libraries around
 the core. Public headers include only public headers and the standard library. The programs around the library
-include only public headers, files of their own folder, and files of the viewer folders in SHARED. Only core/
-starts threads, so only core/ may include oneTBB. A chain of includes within a folder of src/supple has at most
-LONGEST_CHAIN files, and a folder at most MOST_FILES files of its own, so that a reader can hold it in mind.
+include only public headers, files of their own folder and of the one in BUILT_ON, and files of the viewer
+folders in SHARED. Only core/ starts threads, so only core/ may include oneTBB. A chain of includes within a
+folder of src/supple has at most LONGEST_CHAIN files, and a folder at most MOST_FILES files of its own, so that
+a reader can hold it in mind.
 """
 
 import collections
@@ -26,9 +27,11 @@ LONGER_CHAINS = {"octree": 6, "answers": 6}
 MOST_FILES = 20
 # Libraries around the core, each with the last layer whose internal headers it may include; recording: none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None}
-PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "examples", "benchmarks"]
+PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "experiments", "examples", "benchmarks"]
 # Folders of the viewer that others may include although they are not public: "session/scene_view.hpp".
-SHARED = {"viewer/server": ["session"], "cli": ["session", "export", "server"]}
+SHARED = {"viewer/server": ["session"], "cli": ["session", "export", "server"], "experiments": ["session"]}
+# Programs that are built on the parts of another one.
+BUILT_ON = {"experiments": "cli"}
 PUBLIC = ["include"] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -82,7 +85,8 @@ def problem_in_public_header(root, bracket, name):
 def problem_in_program(root, folder, path, bracket, name):
     if bracket == "<" or is_public(root, name):
         return None
-    if any((base / name).is_file() for base in (path.parent, folder)) and ".." not in name:
+    own = (path.parent, folder, root / BUILT_ON.get(folder.name, folder))
+    if any((base / name).is_file() for base in own) and ".." not in name:
         return None
     if name.split("/")[0] in SHARED.get(folder.relative_to(root).as_posix(), []) and (root / "viewer" / name).is_file():
         return None

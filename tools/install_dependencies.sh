@@ -11,7 +11,8 @@ packages=(
   libassimp-dev zlib1g-dev  # Debian's Assimp names zlib's file for linking, but does not depend on it
   libmeshoptimizer-dev libdraco-dev libzip-dev libpugixml-dev
   libhdf5-dev
-  libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev gnuplot-nox
+  libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev
+  python3-matplotlib  # draws the plots of experiments and benchmarks
   # The viewer, which also needs npm:
   clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32
   libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev

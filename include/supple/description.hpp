@@ -159,6 +159,7 @@ struct Role {
   bool is_rounded = false;  ///< not exact: comparisons may allow a tolerance
 };
 namespace role {
+/// The roles of members. An id is of the object of `side`.
 constexpr Role object(char side) {
   return {.names = Names::object, .side = side, .is_key = true};
 }

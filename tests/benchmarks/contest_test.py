@@ -2,6 +2,7 @@
 same bits everywhere, and the driver writes correct results."""
 
 import contextlib
+import importlib.util
 import io
 import json
 import pathlib
@@ -16,6 +17,8 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 import contest  # noqa: E402
 import contest_report  # noqa: E402
 import contest_targets  # noqa: E402
+
+needs_matplotlib = unittest.skipUnless(importlib.util.find_spec("matplotlib"), "needs matplotlib")
 
 BUILD = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else ROOT / "build/release"
 PROGRAM = BUILD / "bin/supple_contest"
@@ -167,6 +170,7 @@ class Report(unittest.TestCase):
             contest_report.write_csv(table, about, cells)
             self.assertEqual(contest_report.read_csv(table), (about, cells))
 
+    @needs_matplotlib
     def test_each_kept_table_makes_a_page(self):
         tables = list((ROOT / "benchmarks/results").glob("*contest.csv"))
         self.assertTrue(tables)
@@ -193,6 +197,7 @@ class Driver(unittest.TestCase):
                 self.assertEqual(done.stderr, f"contest.py: no {build / name}; run: make bench\n")
                 (build / name).touch()
 
+    @needs_matplotlib
     def test_writes_results(self):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run(

@@ -2,6 +2,7 @@
 
 import csv
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -10,6 +11,12 @@ import unittest
 import xml.etree.ElementTree
 
 from program import PROGRAM, ROOT, ProgramTest, run
+
+# Needed for the plots; the program looks for Debian's Python, too.
+HAS_MATPLOTLIB = any(
+    shutil.which(python) and subprocess.run([python, "-c", "import matplotlib"], capture_output=True).returncode == 0
+    for python in ("python3", "/usr/bin/python3")
+)
 
 TINY = ("table1", "--quick", "--runs", "1", "--seconds", "1")
 
@@ -34,9 +41,13 @@ class Experiment(ProgramTest):
 
     def rows(self, name):
         with open(self.folder / name, newline="") as file:
-            return list(csv.DictReader(file))
+            return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
-    @unittest.skipUnless(shutil.which("gnuplot"), "needs gnuplot")
+    def head(self, name):
+        lines = (self.folder / name).read_text().splitlines()
+        return dict(line[2:].split(": ", 1) for line in lines if line.startswith("#"))
+
+    @unittest.skipUnless(HAS_MATPLOTLIB, "needs matplotlib")
     def test_table1(self):
         done = self.run_here("experiment", *TINY, "--output", "out")
         self.assertEqual((done.status, done.error), (0, ""))
@@ -57,15 +68,16 @@ class Experiment(ProgramTest):
         for threads in ("1", "3"):
             self.assertEqual(
                 self.run_here("experiment", *TINY, "--output", threads, "--threads", threads, "--quiet").status,
-                0 if shutil.which("gnuplot") else 2,
+                0 if HAS_MATPLOTLIB else 2,
             )
         for name in ("table1_runs.csv", "table1_means.csv"):
-            self.assertEqual((self.folder / "1" / name).read_text(), (self.folder / "3" / name).read_text())
+            self.assertTrue(self.rows(f"1/{name}"))
+            self.assertEqual(self.rows(f"1/{name}"), self.rows(f"3/{name}"))
 
     def table1(self, *arguments):
-        """Runs the experiment, with plots if gnuplot is there. Returns the rows of its runs in simulated time."""
+        """Runs the experiment, with plots if matplotlib is there. Returns the rows of its runs in simulated time."""
         done = self.run_here("experiment", "table1", *arguments, "--output", "out", "--quiet")
-        self.assertTrue(done.status == 0 or "gnuplot" in done.error, done.error)
+        self.assertTrue(done.status == 0 or "matplotlib" in done.error, done.error)
         return self.rows("out/table1_runs.csv")
 
     def test_the_scene_files_are_mixed_scenes(self):
@@ -89,7 +101,7 @@ class Experiment(ProgramTest):
         self.assertEqual([r["volume"] for r in shallow[::2]], ["sphere", "aabb", "sphere", "aabb"])
         for run in shallow:
             self.assertEqual(run["narrow"], run["broad"])
-        options = dict(csv.reader((self.folder / "out/table1_options.csv").read_text().splitlines()))
+        options = {row["option"]: row["value"] for row in self.rows("out/table1_options.csv")}
         self.assertEqual(
             [options[o] for o in ("--broad-phase", "--max-level", "--leaf-size", "--object-octree", "--sphere-fit")],
             ["octree", "0", "1", "regular", "vertices"],
@@ -101,35 +113,50 @@ class Experiment(ProgramTest):
         process = subprocess.Popen([PROGRAM, *command], cwd=self.folder, stderr=subprocess.PIPE, text=True)
         path = self.folder / "out/table1_clock_runs.csv"
         deadline = time.monotonic() + 60
-        while not (path.exists() and path.read_text().count("\n") == 2):
+        while not (path.exists() and len(self.rows("out/table1_clock_runs.csv")) == 1):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
         error = process.communicate()[1]
         self.assertEqual(process.returncode, 130)
         self.assertIn("--resume", error)
-        first = path.read_text()
-        self.assertEqual(first.count("\n"), 2)
+        first = self.rows("out/table1_clock_runs.csv")
+        self.assertEqual(len(first), 1)
         self.assert_one_line_error(
             self.run_here(*command, "--resume", "--broad-phase", "grid"), "--broad-phase was octree", "is grid now"
         )
-        self.assert_one_line_error(self.run_here(*command, "--resume", PATH="/nonexistent"), "gnuplot")
-        self.assertEqual(path.read_text()[: len(first)], first)
+        self.assert_one_line_error(self.run_here(*command, "--resume", PATH="/nonexistent"), "matplotlib")
         runs = self.rows("out/table1_clock_runs.csv")
+        self.assertEqual(runs[:1], first)
         self.assertEqual([r["seed"] for r in runs], ["1", "2"])
         for run in runs:
             self.assertGreaterEqual(float(run["detection_seconds"]), 1)
             self.assertGreater(float(run["real_seconds"]), float(run["detection_seconds"]))
         self.assertFalse((self.folder / "out/table1_runs.csv").exists())
 
-    def test_without_gnuplot_tables_are_written(self):
-        done = self.run_here("experiment", *TINY, "--output", "out", "--quiet", PATH="/nonexistent")
-        self.assert_one_line_error(done, "gnuplot", "apt-get install gnuplot-nox")
-        self.check_page(self.folder / "out/table1.html", plots=0)
-        self.assertTrue(self.rows("out/table1_runs.csv"))
+    def test_without_python_or_matplotlib_tables_are_written(self):
+        self.write("broken/matplotlib.py", "raise ImportError")
+        for environment in ({"PATH": "/nonexistent"}, {"PYTHONPATH": str(self.folder / "broken")}):
+            done = self.run_here("experiment", *TINY, "--output", "out", "--quiet", **environment)
+            self.assert_one_line_error(done, "matplotlib", "apt-get install python3-matplotlib")
+            self.assertTrue(self.rows("out/table1_runs.csv"))
+            self.assertFalse((self.folder / "out/table1.html").exists())
+        head = self.head("out/table1_means.csv")
+        self.assertEqual(head["command"], "supple experiment " + " ".join(TINY) + " --output out --quiet")
+        self.assertLess({"date", "commit", "processor", "compiler"}, head.keys())
+
+    @unittest.skipUnless(HAS_MATPLOTLIB, "needs matplotlib")
+    def test_the_script_makes_the_page_later(self):
+        self.run_here("experiment", *TINY, "--output", "out", "--quiet", PATH="/nonexistent")
+        script = pathlib.Path(PROGRAM).parent / "supple-experiment-report"
+        done = subprocess.run([script, self.folder / "out"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        self.check_page(self.folder / "out/table1.html", plots=2)
+        done = subprocess.run([script, self.folder], capture_output=True, text=True)
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
 
     @unittest.skipUnless(
-        shutil.which("gnuplot") and os.environ.get("SUPPLE_QUICK_EXPERIMENTS") == "1", "takes long unless optimised"
+        HAS_MATPLOTLIB and os.environ.get("SUPPLE_QUICK_EXPERIMENTS") == "1", "takes long unless optimised"
     )
     def test_quick_versions(self):
         for name, plots, table in (("scaling", 5, "scaling_vertices"), ("arity", 3, "arity_objects"),
@@ -160,6 +187,14 @@ class Experiment(ProgramTest):
         self.assert_one_line_error(
             self.run_here("experiment", *TINY, "--output", "file/below", "--quiet"), "file/below", "--output"
         )
+
+    def test_without_its_program(self):
+        alone = shutil.copy(PROGRAM, self.folder / "supple")
+        done = subprocess.run([alone, "experiment", "table1"], capture_output=True, text=True, env={"PATH": "/nonexistent"})
+        self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (2, "", 1))
+        self.assertIn("supple-experiment", done.stderr)
+        os.symlink(pathlib.Path(PROGRAM).parent / "supple-experiment", self.folder / "supple-experiment")
+        self.assertEqual(subprocess.run([alone, "experiment", "--help"], stdout=subprocess.DEVNULL).returncode, 0)
 
     def test_tree_arity(self):
         expected = self.run_here("detect", "--json", "-", "--no-stats", *self.models()).out

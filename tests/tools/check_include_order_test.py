@@ -114,6 +114,11 @@ class CheckIncludeOrder(unittest.TestCase):
         self.expect("formats/src/bad.cpp", '\n#include "octree/tree.hpp"\n', "mesh comes before octree")
         self.expect("src/supple/mesh/bad.cpp", '\n#include "octree/tree.hpp"\n', "mesh comes before octree")
 
+    def test_experiments_are_built_on_the_command_line(self):
+        files = {"cli/text.hpp": "", "experiments/fit.hpp": "", "experiments/fit.cpp": '\n#include "text.hpp"\n'}
+        self.assertEqual(run_on({**GOOD, **files})[0], 0)
+        self.expect("cli/bad.cpp", '\n#include "experiments/fit.hpp"\n', "same folder")
+
     def test_program_leaves_its_folder(self):
         self.expect("examples/bad.cpp", '\n#include "../cli/options.hpp"\n', "same folder")
 

@@ -87,9 +87,8 @@ std::vector<std::string> columns_of(const Table& table, const std::vector<std::s
 
 const Table& table_of(const Report& report, const std::string& name) {
   for (const Section& section : report.sections)
-    for (const Block& block : section.blocks)
-      if (const auto* table = std::get_if<Table>(&block); table != nullptr && table->name == name)
-        return *table;
+    for (const Table& table : section.tables)
+      if (table.name == name) return table;
   throw std::runtime_error("no table " + name);
 }
 

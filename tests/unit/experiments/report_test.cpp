@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "experiments/html.hpp"
 #include "supple/error.hpp"
 
 namespace supple::experiments {
@@ -28,6 +27,9 @@ TEST(Table, CsvIsReadBack) {
   EXPECT_EQ(parse_csv("\"\",\"\"\"\",\"a\nb\"\n").rows,
             (std::vector<std::vector<std::string>>{{"", "\"", "a\nb"}}));
   EXPECT_TRUE(parse_csv("").rows.empty());
+  const std::string commented = "# a: b,\"c\n#\nx\n" + csv_of(std::vector<Cell>{std::string("#1")});
+  EXPECT_EQ(parse_csv(commented + "# torn").rows, (std::vector<std::vector<std::string>>{{"x"}, {"#1"}}));
+  EXPECT_EQ(parse_csv(commented + "# torn").length, commented.size());
 }
 
 TEST(Table, TextIsAligned) {
@@ -36,12 +38,6 @@ TEST(Table, TextIsAligned) {
             "  Word        Count  Number ms\n"
             "  a, \"b\"  1,234,567      0.100\n"
             "  <c>             –       1235\n");
-}
-
-TEST(Table, HtmlIsEscaped) {
-  const std::string html = html_of(small_table());
-  EXPECT_NE(html.find("<td>&lt;c&gt;</td>"), std::string::npos);
-  EXPECT_NE(html.find("<td class=\"number\">1,234,567</td>"), std::string::npos);
 }
 
 TEST(Table, RefusesARowOfAnotherWidth) {
@@ -60,37 +56,16 @@ TEST(Rounded, HasSignificantDigits) {
   EXPECT_EQ(rounded(1.0 / 0.0), "∞");
 }
 
-TEST(Html, ClosesWhatIsOpen) {
-  Html html;
-  html.open("div", {{"title", "\"a\" & b"}});
-  html.open("p");
-  html.text("1 < 2");
-  EXPECT_EQ(html.finish(), "<div title=\"&quot;a&quot; &amp; b\">\n<p>\n1 &lt; 2</p>\n</div>\n");
-}
-
 TEST(Report, SaysWhatHolds) {
   Report report;
   report.title = "Title";
   report.claims = {{"one", Verdict::holds, "because"},
                    {"two", Verdict::does_not_hold, "for"},
                    {"three", Verdict::cannot_tell, "as"}};
-  report.sections.push_back({"Section", {std::string("Paragraph"), small_table(), Plot{"P", "x", "y"}}});
+  report.sections.push_back({"Section", {"Paragraph"}, {small_table()}});
   const std::string text = text_of(report);
   EXPECT_NE(text.find("- one\n  Holds. because\n- two\n  Does not hold. for\n- three\n  Undecided. as\n"),
             std::string::npos);
-  const std::string html = html_of(report, {"<svg></svg>"});
-  EXPECT_NE(html.find("claim fails"), std::string::npos);
-  EXPECT_NE(html.find("<svg></svg>"), std::string::npos);
-}
-
-TEST(Plot, ScriptQuotesText) {
-  Plot plot{"Author's plot", "x", "y"};
-  plot.series.push_back({"it's", {{1, 2}, {10, 20}}});
-  plot.series.push_back({"nothing", {}});
-  const std::string script = gnuplot_script(plot);
-  EXPECT_NE(script.find("set title 'Author''s plot'"), std::string::npos);
-  EXPECT_NE(script.find("title 'it''s'\n1 2\n10 20\ne\n"), std::string::npos);
-  EXPECT_EQ(script.find("nothing"), std::string::npos) << "a series without points is left out";
 }
 
 }  // namespace

@@ -167,7 +167,8 @@ TEST_F(Table1Folder, ResumeRepeatsNoCompleteRun) {
   const std::string whole = read("table1_runs.csv");
   const auto all = rows("table1_runs.csv");
   // One complete run, marked by a number that no run has, and a line that a killed program left behind.
-  const std::size_t end_of_header = whole.find('\n') + 1, end_of_run = whole.find('\n', end_of_header) + 1;
+  const std::size_t end_of_header = whole.find('\n', whole.find("\nscene,") + 1) + 1,
+                    end_of_run = whole.find('\n', end_of_header) + 1;
   auto marked = all.front();
   marked[5] = "777";
   std::string line;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "report.hpp"
+#include "work.hpp"
+
+namespace supple::experiments {
+
+struct ArityOptions {
+  std::uint32_t frequency = 128;  ///< of the spheres: 20 f² triangles
+  std::uint32_t rings = 512;      ///< of the tori: r² triangles
+  bool with_bikes = true;
+  std::vector<std::size_t> box_counts{1000, 10'000, 100'000};  ///< of scenes, ascending
+  int frames = 5;                                              ///< ≥ 1; the fastest counts
+  std::uint32_t threads = 1;
+  std::uint64_t seed = 1;
+};
+
+ArityOptions arity_options(bool quick);
+
+/// Trees of two, four and eight children, of objects and of the scene.
+Report run_arity(const ArityOptions& options, bool show_progress);
+
+}  // namespace supple::experiments

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "table1_options.hpp"
+
+namespace supple::experiments {
+
+/// Options of `supple experiment`.
+struct ExperimentOptions {
+  enum class Kind { table1, scaling, arity, volumes, claims };
+  Kind kind = Kind::table1;
+  bool quick = false;
+  bool quiet = false;
+  std::string output;  ///< folder; empty: experiment_ and the kind
+  /// Without a value: one run per core for `table1`; one thread for runs by the clock and for the other
+  /// experiments, so that times measure work.
+  std::optional<std::uint32_t> threads{};
+  std::uint64_t seed = 1;
+  // For table1; without a value, --quick decides.
+  std::vector<std::uint32_t> objects{};  ///< of mixed scenes; these and `scenes` replace the built-in scenes
+  std::vector<std::string> scenes{};     ///< scene files
+  std::vector<double> scene_sizes{};     ///< edges of the border, for every scene
+  Table1Method method{};
+  std::optional<std::uint32_t> runs{};
+  std::optional<std::uint32_t> simulated_seconds{};  ///< 0: no runs in simulated time
+  std::optional<std::uint32_t> wall_clock{};         ///< seconds of detection per run; none: no such runs
+  bool resume = false;
+};
+
+const char* name_of(ExperimentOptions::Kind kind);
+
+/// Runs an experiment, writes its files and prints its tables. Returns the exit status of the program.
+int run_experiment(const ExperimentOptions& options);
+
+}  // namespace supple::experiments

@@ -1,0 +1,163 @@
+#include "experiment_options.hpp"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "options.hpp"
+
+namespace supple::experiments {
+namespace {
+
+constexpr const char* footer = R"(Examples:
+  supple experiment table1 --quick
+      A small version of the paper's Table 1: collisions of 3, 6 and 9 objects, with boxes and with spheres.
+  supple experiment table1 --output table1
+      Five runs of ten simulated minutes for each configuration. Writes CSV files and table1/table1.html.
+  supple experiment table1 --objects 3,6,9 --seconds 0 --wall-clock 600 --output clock
+      Counts the collisions found in ten minutes of detection, as the paper does. Takes hours. Ctrl-C stops
+      it; the same command with --resume goes on.
+  supple experiment table1 --objects 12,20,30 --bounding-volume sphere --sphere-fit box
+      More objects, and the spheres of the paper's eq. 3 and 4.
+  supple experiment table1 --scene scenes/nine.toml --scene-size 3,4
+      Your own scene in two sizes.
+  supple experiment scaling
+      Measures time against the number of objects, up to 1,000,000, and of vertices, and fits exponents.
+  supple experiment arity
+      Compares trees of two, four and eight children.
+  supple experiment volumes
+      Compares boxes, spheres, oriented boxes and k-DOPs, and ways to build an octree.
+  supple experiment claims
+      Measures single claims of the paper: the cost of one test, the depth of octrees, stability.
+
+Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the
+paper's claims hold. The page needs python3 with matplotlib. Without it, the tables are written and the exit
+status is 2. docs/experiments.md describes the experiments.)";
+
+void add_kind(CLI::App& app, ExperimentOptions& options) {
+  using Kind = ExperimentOptions::Kind;
+  const std::map<std::string, Kind> kinds{{"table1", Kind::table1},
+                                          {"scaling", Kind::scaling},
+                                          {"arity", Kind::arity},
+                                          {"volumes", Kind::volumes},
+                                          {"claims", Kind::claims}};
+  const auto parse = [&options, kinds](const std::string& given) {
+    const auto found = kinds.find(given);
+    if (found == kinds.end())
+      throw CLI::ValidationError("experiment", "there is no experiment '" + given +
+                                                   "'; choose table1, scaling, arity, volumes or claims");
+    options.kind = found->second;
+  };
+  app.add_option_function<std::string>("table1|scaling|arity|volumes|claims", parse, "The experiment")
+      ->required()
+      ->type_name("");
+}
+
+/// The lists of scenes, sizes and volumes.
+std::vector<CLI::Option*> add_table1_lists(CLI::App& app, ExperimentOptions& options) {
+  return {
+      cli::add_list(
+          app, "--objects",
+          [&options](const std::string& given) {
+            options.objects.push_back(
+                static_cast<std::uint32_t>(cli::whole_of("--objects", ValueRange::from(2, 100'000), given)));
+          },
+          "Numbers of objects: pawns, fish and rabbits in equal parts (default: 3,6,9 and other scenes)")
+          ->type_name("N,..."),
+      app.add_option("--scene", options.scenes,
+                     "A scene file to run instead of the built-in scenes; may be given several "
+                     "times")
+          ->type_name("FILE")
+          ->expected(1)
+          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll),
+      cli::add_list(
+          app, "--scene-size",
+          [&options](const std::string& given) {
+            options.scene_sizes.push_back(cli::real_of("--scene-size", ValueRange::above(0), given));
+          },
+          "Edge of the cube that reflects the objects; each scene runs in each size (default: the border "
+          "of the scene)")
+          ->type_name("D,..."),
+      cli::add_list(
+          app, "--bounding-volume",
+          [&options, is_default = true](const std::string& given) mutable {
+            if (std::exchange(is_default, false)) options.method.volumes.clear();
+            options.method.volumes.push_back(static_cast<BoundingVolume>(cli::index_of_word(
+                "--bounding-volume", {words<BoundingVolume>.begin(), words<BoundingVolume>.end()}, given)));
+          },
+          "Shapes of objects and nodes to compare (default: aabb,sphere)")
+          ->type_name("aabb,sphere,...")};
+}
+
+void add_table1(CLI::App& app, ExperimentOptions& options, cli::Dependences& dependences) {
+  const auto is_table1 = [&options] { return options.kind == ExperimentOptions::Kind::table1; };
+  const auto table1_only = [&](CLI::Option* option) {
+    option->description("table1: " + option->get_description());
+    dependences.push_back({option, is_table1, "table1"});
+  };
+  const auto add_needs = [&](CLI::Option* option, std::string_view key) {
+    for (const cli::OptionNeed& need : cli::option_needs()) {
+      if (key == need.key)
+        dependences.push_back({option, [&options, need] { return is_met(need, options.method); },
+                               cli::flag_of(need.decider) + " " + need.values});
+    }
+  };
+  constexpr const char* root_key = "scene_octree_root";
+  for (CLI::Option* const option : add_table1_lists(app, options)) table1_only(option);
+  for_each_option(
+      [&](const auto& field, auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        CLI::Option* const option =
+            cli::add_field(app, field, value, [&value](const Value& given) { value = given; });
+        table1_only(option);
+        add_needs(option, field.key);
+      },
+      options.method);
+  CLI::Option* const root =
+      cli::add_root(app, root_key, options.method.root_is_border,
+                    [&options](const RootCube& cube) { options.method.scene.scene_octree.root = cube; });
+  table1_only(root);
+  add_needs(root, root_key);
+  table1_only(cli::add_words(
+      app, "--integrator", {words<Integrator>.begin(), words<Integrator>.end()},
+      [&options](std::size_t place) { options.method.integrator = static_cast<Integrator>(place); },
+      "Integrator of all mass-spring bodies (default: that of the scene)"));
+  table1_only(
+      cli::add_number(app, "--runs", options.runs, 1, 1000, "Number of runs per configuration (default: 5)"));
+  table1_only(cli::add_number(app, "--seconds", options.simulated_seconds, 0, 1'000'000,
+                              "Simulated seconds per run; 0 means no runs in simulated time (default: 600)"));
+  dependences.push_back(
+      {app.get_option("--seconds"),
+       [&options] { return options.simulated_seconds.value_or(1) > 0 || options.wall_clock.has_value(); },
+       "--wall-clock when it is 0"});
+  table1_only(cli::add_number(app, "--wall-clock", options.wall_clock, 1, 1'000'000,
+                              "Also count the collisions that this many seconds of detection find in each "
+                              "run; the time of the motion does not count"));
+  table1_only(app.add_flag("--resume", options.resume,
+                           "Go on with the experiment in the output folder; its complete runs are not "
+                           "repeated"));
+}
+
+}  // namespace
+
+void add_options(CLI::App& app, ExperimentOptions& options, cli::Dependences& dependences) {
+  app.footer(footer);
+  add_kind(app, options);
+  app.add_flag("--quick", options.quick, "Run a small version, in under a minute");
+  app.add_option("--output", options.output, "Folder for the results (default: experiment_NAME)")
+      ->type_name("DIR");
+  cli::add_number(app, "--threads", options.threads, 0, 1024,
+                  "Worker threads (default: 1); for table1 also the number of parallel runs in simulated "
+                  "time (default: one per core); 0 means one per core");
+  dependences.push_back({app.get_option("--threads"),
+                         [&options] { return options.kind != ExperimentOptions::Kind::claims; },
+                         "another experiment than claims, which has one thread"});
+  cli::add_number(app, "--seed", options.seed, 0, 1'000'000'000, "Seed of the random numbers (default: 1)");
+  add_table1(app, options, dependences);
+  app.add_flag("--quiet", options.quiet, "Print no tables and no progress");
+}
+
+}  // namespace supple::experiments

@@ -1,0 +1,68 @@
+#include "fit.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+
+namespace supple::experiments {
+
+PowerLaw fit_power_law(const Points& points) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Points logs;
+  for (const auto& [x, y] : points) {
+    if (x > 0 && y > 0) logs.emplace_back(std::log(x), std::log(y));
+  }
+  const double count = static_cast<double>(logs.size());
+  double mean_x = 0, mean_y = 0;
+  for (const auto& [x, y] : logs) {
+    mean_x += x / count;
+    mean_y += y / count;
+  }
+  double xx = 0, xy = 0;
+  for (const auto& [x, y] : logs) {
+    xx += (x - mean_x) * (x - mean_x);
+    xy += (x - mean_x) * (y - mean_y);
+  }
+  if (logs.size() < 2 || !(xx > 0)) return {nan, nan, nan, logs.size()};
+  const double slope = xy / xx;
+  double residual = 0;
+  for (const auto& [x, y] : logs) {
+    const double error = y - mean_y - slope * (x - mean_x);
+    residual += error * error;
+  }
+  const double standard_error = logs.size() < 3 ? nan : std::sqrt(residual / (count - 2) / xx);
+  return {slope, std::exp(mean_y - slope * mean_x), standard_error, logs.size()};
+}
+
+double exponent_of(const std::function<double(double)>& formula, const Points& points) {
+  Points model;
+  for (const auto& point : points) {
+    if (point.second > 0) model.emplace_back(point.first, formula(point.first));
+  }
+  return fit_power_law(model).exponent;
+}
+
+std::string text_of(const PowerLaw& fit) {
+  if (std::isnan(fit.exponent)) return "–";
+  if (std::isnan(fit.standard_error)) return fmt::format("{:.2f}", fit.exponent);
+  return fmt::format("{:.2f} ± {:.2f}", fit.exponent, fit.standard_error);
+}
+
+Estimate estimate_of(std::span<const double> values) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const double count = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value;
+  const double mean = sum / count;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return {mean, values.size() < 2 ? nan : std::sqrt(squares / (count - 1) / count)};
+}
+
+std::string text_of(const Estimate& estimate) {
+  if (std::isnan(estimate.mean)) return "–";
+  if (std::isnan(estimate.error)) return fmt::format("{:.2f}", estimate.mean);
+  return fmt::format("{:.2f} ± {:.2f}", estimate.mean, estimate.error);
+}
+
+}  // namespace supple::experiments
