@@ -301,6 +301,10 @@ def main():
     if IS_ROOT and subprocess.run(["unshare", "-m", "true"], capture_output=True).returncode != 0:
         print("skipped: read-only folders, because root cannot mount here")
         faults = [fault for fault in faults if fault.wrap is not read_only]
+    commands = COMMANDS
+    if b"without the viewer" in subprocess.run([PROGRAM, "view", "a.obj"], capture_output=True).stderr:
+        print("skipped: view, because this program was built without the viewer")
+        commands = [command for command in COMMANDS if command.name != "view"]
     base = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
     tempfile.tempdir = base
     rows, problems, total = {fault.name: {} for fault in faults}, [], 0
@@ -309,7 +313,7 @@ def main():
         inputs.mkdir()
         write_inputs(inputs)
         try:
-            references = [Reference(command, inputs) for command in COMMANDS]
+            references = [Reference(command, inputs) for command in commands]
         except OSError as problem:
             print(f"skipped: {problem}")
             return SKIPPED
