@@ -11,6 +11,7 @@
 
 #include "record_json.hpp"
 #include "result_json.hpp"
+#include "supple/difference_descriptions.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/version.hpp"
 

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "supple/difference_descriptions.hpp"
 #include "supple/record_descriptions.hpp"
 
 namespace supple {
