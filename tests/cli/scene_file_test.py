@@ -125,7 +125,7 @@ class Meaning(ProgramTest):
         done = self.run_here("detect", "scene.toml", "--steps", "60", "--json", "-", "--no-stats", "--contact-details")
         self.assertEqual((done.status, done.error), (0, ""))
         self.assertGreater(done.out.count('"segment"'), 1000)
-        self.assertEqual(hashlib.sha256(done.out.encode()).hexdigest(), "c54b6087396cf164b68512b31c97bf1814a5de9cf056d1a977eec13ac8ba1a25")
+        self.assertEqual(hashlib.sha256(done.out.encode()).hexdigest(), "63f95707f71c544667fbb78096b94de6d5de5bd108e0987d3667076ac3472864")
 
     def test_nine_deform_and_collide(self):
         frames = self.detect(ROOT / "scenes/nine.toml", "--steps", "300", "--no-contact-points")["frames"]
