@@ -99,7 +99,7 @@ RaggedWriter::RaggedWriter(hid_t file, const ListLayout& layout)
       end_(file, layout.group + "/end", ScalarType::uint64, 1, frames_in_chunk) {}
 
 void RaggedWriter::append(const Rows& rows, const Places& place_of) {
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
+  for (std::size_t c = 0; rows.count > 0 && c < columns_.size(); ++c) {
     const Column& column = layout_->columns[c];
     std::byte* to = columns_[c].append(rows.count);
     const std::byte* from = rows.data + column.offset;
