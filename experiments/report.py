@@ -3,8 +3,9 @@
 
 usage: supple-experiment-report FOLDER
 
-FOLDER has the CSV files and the NAME_report.json that `supple experiment NAME` writes; the page is FOLDER/NAME.html.
-The plots need matplotlib. The build copies this file beside the program and names it as above. benchmarks/contest_report.py uses the functions of this file for its page.
+FOLDER has the CSV files and the NAME_report.json that `supple experiment NAME` writes; the page is
+FOLDER/NAME.html. The plots need matplotlib. The build copies this file beside the program and names it as above.
+benchmarks/contest_report.py uses the functions of this file for its page.
 """
 
 import csv

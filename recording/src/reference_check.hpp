@@ -70,9 +70,10 @@ class ReferenceCheck {
       return 0;
   }
 
-  void below(const std::string& list, std::size_t row, const std::string& column, std::uint64_t value,
+  /// The names become texts only on failure: this runs for each value.
+  void below(std::string_view list, std::size_t row, std::string_view column, std::uint64_t value,
              std::uint64_t allowed) const {
-    if (value >= allowed) fail_({list, row, column, value, allowed});
+    if (value >= allowed) fail_({std::string(list), row, std::string(column), value, allowed});
   }
 
   template <class Row>
@@ -107,10 +108,11 @@ class ReferenceCheck {
     if constexpr (Worded<Value>) {
       each([](const Row&, Value value) { return Pair(number_of(value), words<Value>.size()); });
     } else if constexpr (std::is_same_v<Value, Feature>) {
+      const std::string index = name_of_feature_index(field.key);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const Feature& feature = rows[i].*field.member;
         below(list.name, i, field.key, number_of(feature.kind), words<FeatureKind>.size());
-        below(list.name, i, name_of_feature_index(field.key), feature.index, 3);
+        below(list.name, i, index, feature.index, 3);
       }
     } else if constexpr (std::is_same_v<Value, std::uint32_t>) {
       if (field.role.names == Names::triangle)
