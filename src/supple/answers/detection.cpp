@@ -39,23 +39,23 @@ bool Detection::run(const Question& question, std::uint64_t max_contacts, const 
 }
 
 bool Detection::find_contacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats) {
-  contact_objects_.clear();
+  intersected_objects_.clear();
   for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
     WorldObject* const object = world_.at(slot);
-    contact_objects_.emplace_back();
+    intersected_objects_.emplace_back();
     if (object == nullptr) continue;
-    contact_objects_.back() = {world_.id_of(slot),
-                               object->resting_view(),
-                               object->octree().triangle_ids(),
-                               object->octree().vertex_count(),
-                               object->vertex_groups(),
-                               object->neighbours()};
+    intersected_objects_.back() = {world_.id_of(slot),
+                                   object->resting_view(),
+                                   object->octree().triangle_ids(),
+                                   object->octree().vertex_count(),
+                                   object->vertex_groups(),
+                                   object->neighbours()};
   }
-  const ContactSearch search{question_.has_intersections(),
-                             question_.contact_points || question_.has_penetration(),
-                             question_.colliding_vertices};
-  return contact_pass_.run(pairs_.jobs(), contact_objects_, world_.versions(), search, max_contacts, stop,
-                           world_.parallel, stats);
+  const IntersectionSearch search{question_.has_intersections(),
+                                  question_.contact_points || question_.has_penetration(),
+                                  question_.colliding_vertices};
+  return intersection_pass_.run(pairs_.jobs(), intersected_objects_, world_.versions(), search, max_contacts,
+                                stop, world_.parallel, stats);
 }
 
 bool Detection::find_impacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats) {
@@ -84,9 +84,9 @@ bool Detection::find_penetrations(const StopSignal& stop, StepStats& stats) {
     }
   }
   DetectResult found;
-  found.groups = contact_pass_.groups();
-  found.contacts = contact_pass_.contacts();
-  found.contact_points = contact_pass_.contact_points();
+  found.groups = intersection_pass_.groups();
+  found.contacts = intersection_pass_.contacts();
+  found.contact_points = intersection_pass_.contact_points();
   if (!penetration_pass_.run(pairs_.jobs(), penetrated_objects_, world_.versions(), found, question_.depths,
                              stop, world_.parallel))
     return false;
@@ -114,12 +114,12 @@ void Detection::list_non_finite() {
 
 void Detection::list(DetectResult& found) {
   if (question_.searches_at_rest()) {
-    found.truncated = contact_pass_.is_truncated();
-    found.groups = contact_pass_.groups();
-    found.contacts = contact_pass_.contacts();
-    found.contact_points = contact_pass_.contact_points();
-    found.colliding_vertex_groups = contact_pass_.colliding_vertex_groups();
-    found.colliding_vertices = contact_pass_.colliding_vertices();
+    found.truncated = intersection_pass_.is_truncated();
+    found.groups = intersection_pass_.groups();
+    found.contacts = intersection_pass_.contacts();
+    found.contact_points = intersection_pass_.contact_points();
+    found.colliding_vertex_groups = intersection_pass_.colliding_vertex_groups();
+    found.colliding_vertices = intersection_pass_.colliding_vertices();
   }
   if (question_.is_continuous()) {
     found.truncated = found.truncated || impact_pass_.is_truncated();

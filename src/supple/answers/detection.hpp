@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "answers/impact/impact_pass.hpp"
-#include "answers/intersection/contact_pass.hpp"
+#include "answers/intersection/intersection_pass.hpp"
 #include "answers/moving_objects.hpp"
 #include "answers/object_pairs.hpp"
 #include "answers/penetration/penetration_pass.hpp"
@@ -45,14 +45,14 @@ class Detection {
   World& world_;
   Question question_;
   ObjectPairs pairs_;
-  ContactPass contact_pass_;
+  IntersectionPass intersection_pass_;
   ImpactPass impact_pass_;
   ProximityPass proximity_pass_;
   PenetrationPass penetration_pass_;
   UntestedKinds untested_;
   std::vector<NonFiniteVertex> non_finite_;
   // By slot.
-  std::vector<ContactObject> contact_objects_;
+  std::vector<IntersectedObject> intersected_objects_;
   std::vector<MovingObject> moving_objects_;
   std::vector<PenetratedObject> penetrated_objects_;
 };

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "answers/impact/impact_pass.hpp"
-#include "answers/intersection/contact_pass.hpp"
+#include "answers/intersection/intersection_pass.hpp"
 #include "answers/proximity/proximity_pass.hpp"
 #include "core/parallel.hpp"
 #include "supple/scene.hpp"
@@ -137,10 +137,10 @@ TEST(BoundedMemory, OfTheFirstIntersectionsIsLimited) {
                        {.self_collision = true, .neighbours = Neighbours::exact}, {}, Parallel(1));
     object.move().set_positions(star.positions, Parallel(1));
     object.update({.resting = true}, Parallel(1));
-    const ContactObject listed{
+    const IntersectedObject listed{
         {0, 0}, object.resting_view(), object.octree().triangle_ids(), star.positions.size(),
         {},     object.neighbours()};
-    const auto find = [&](ContactPass& pass, std::uint64_t most, std::uint32_t threads) {
+    const auto find = [&](IntersectionPass& pass, std::uint64_t most, std::uint32_t threads) {
       const ContactJob job{0, 0};
       const std::uint64_t version = 1;
       StepStats stats;
@@ -148,13 +148,13 @@ TEST(BoundedMemory, OfTheFirstIntersectionsIsLimited) {
                Parallel(threads), stats);
       return pass.contacts();
     };
-    ContactPass all;
+    IntersectionPass all;
     const auto expected = find(all, any_number, 1);
     ASSERT_EQ(expected.size(), 400u * 399 / 2);
     EXPECT_GE(all.largest_buffer(), 2 * expected.size());
     for (const std::uint32_t threads : {1u, 3u}) {
       for (const std::uint64_t most : {0u, 1u, 1000u}) {
-        ContactPass some;
+        IntersectionPass some;
         const auto found = find(some, most, threads);
         EXPECT_TRUE(some.is_truncated());
         ASSERT_EQ(found.size(), most);

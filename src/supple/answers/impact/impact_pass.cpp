@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -47,7 +48,7 @@ bool is_earlier(const ContinuousContact& p, std::uint32_t job_p, const Continuou
   return job_p != job_q ? job_p < job_q : order_of(p) < order_of(q);
 }
 
-std::uint64_t place_of(std::uint32_t job, ElementPairKind kind, std::uint32_t first_of_element_a) {
+std::uint64_t place_of_element(std::uint32_t job, ElementPairKind kind, std::uint32_t first_of_element_a) {
   return ContactLimit::place(job, static_cast<std::uint32_t>(kind) << 29 | first_of_element_a >> 3);
 }
 
@@ -100,28 +101,21 @@ bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObj
                      std::span<const std::uint64_t> versions, const ImpactSearchOptions& options,
                      std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
                      StepStats& stats) {
-  Timer timer;
+  begin(jobs, objects, stop);
   const bool is_same_search = options.impact == last_options_.impact &&
                               options.kinds == last_options_.kinds &&
                               options.listing == last_options_.listing;
-  last_options_ = options;
-  start(jobs, objects, options, stop);
-  outcomes_.plan(jobs, versions, is_same_search);
-  limit_.start(lists_first() ? ContactLimit::unlimited : max_contacts, jobs.size());
-  for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
-    limit_.add(job, outcomes_.ranges(job)[0].count);
-  search(Search::all, outcomes_.open_jobs(), end_of_search(options_.impact), parallel);
-  add_stats(workers_, timer.lap(), stats);
-  if (stop.stop_requested()) return false;
-  gather_contacts(parallel);
-  is_truncated_ = !lists_first() && contacts_.size() > max_contacts;
-  if (is_truncated_) {
-    outcomes_.truncate(max_contacts);
-    contacts_.resize(static_cast<std::size_t>(max_contacts));
-  }
-  outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
-  if (lists_first()) is_truncated_ = first_contacts_.choose(contacts_, max_contacts, groups_);
-  stats.contacts += this->contacts().size();
+  options_ = last_options_ = options;
+  search_ = Search::all;
+  latest_ = end_of_search(options_.impact);
+  // Which contacts are the first of an element is known when all were found.
+  const std::uint64_t most = lists_first() ? ContactLimit::unlimited : max_contacts;
+  if (!run_open_jobs(versions, is_same_search, most, parallel, stats)) return false;
+  Timer timer;
+  gather(parallel);
+  end(most);
+  if (lists_first()) is_truncated_ = first_contacts_.choose(records_, max_contacts, groups_);
+  stats.contacts += contacts().size();
   stats.sort_and_events_seconds += timer.lap();
   return true;
 }
@@ -130,7 +124,8 @@ std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const Conta
                                                            std::span<const MovingObject> objects,
                                                            const ImpactSearchOptions& options,
                                                            const Parallel& parallel) {
-  start(jobs, objects, options, {});
+  begin(jobs, objects, {});
+  options_ = options;
   limit_.start(ContactLimit::unlimited, 0);
   all_jobs_.resize(jobs.size());
   std::iota(all_jobs_.begin(), all_jobs_.end(), 0u);
@@ -149,32 +144,11 @@ const ImpactPass::Earliest* ImpactPass::earliest_of_workers() const {
   return best;
 }
 
-void ImpactPass::start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                       const ImpactSearchOptions& options, const StopSignal& stop) {
-  jobs_ = jobs;
-  objects_ = objects;
-  options_ = options;
-  stop_ = stop;
-}
-
 void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, float until,
                         const Parallel& parallel) {
   search_ = search;
   latest_ = until;
-  workers_.resize(parallel.worker_count());
-  for (Worker& worker : workers_) {
-    worker.traversal.set_stop(stop_);
-    worker.last_task = no_task;
-    worker.found.clear();
-    worker.stats = {};
-    worker.earliest.reset();
-    worker.limits.clear();
-    worker.near_jobs.clear();
-  }
-  tasks_.plan(jobs, workers_.size(), workers_[0].traversal,
-              [&](std::uint32_t job) { return view_of_job(job); });
-  if (search == Search::all) outcomes_.expect_tasks(tasks_.tasks().size());
-  tasks_.run(parallel, workers_, stop_, [&](std::size_t task, std::uint32_t w) { run_task(task, w); });
+  run_tasks(jobs, parallel);
 }
 
 ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
@@ -199,25 +173,13 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   return pair;
 }
 
-void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
-  const ContactTask& contact_task = tasks_.tasks()[task];
-  const std::uint32_t job = contact_task.job;
-  Worker& worker = workers_[w];
-  // As in `ContactPass`: with a limit, the tasks of a job that follow each other share a list.
-  const bool continues =
-      limit_.is_set() && worker.last_task != no_task && tasks_.tasks()[worker.last_task].job == job;
-  const Range start = continues ? outcomes_.take(worker.last_task)[0]
-                                : Range{static_cast<std::uint32_t>(worker.found.size()), 0};
-  worker.last_task = task;
-  const std::size_t first = start.first;
+void ImpactPass::run_task(std::size_t task, Worker& worker) {
+  const auto& [job, root] = tasks_.tasks()[task];
+  const Ranges ranges = begin_task(task, worker);
+  if (limit_.excludes(ContactLimit::place(job, 0))) return end_task(task, ranges, worker);
+  const std::size_t first = ranges[0].first;
   worker.keep_first_at = least_to_keep_first;
-  const auto set_outcome = [&] {
-    const auto count = static_cast<std::uint32_t>(worker.found.size() - first);
-    if (search_ == Search::all) outcomes_.of_task(task) = {w, {{{start.first, count}}}};
-    limit_.add(job, count - std::min(count, start.count));
-  };
-  if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
-  worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,
+  worker.traversal.find_element_pairs(view_of_job(job), root, worker.stats.traversal,
                                       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
                                         Timer timer;
                                         test_candidates(job, kind, candidates, worker);
@@ -227,7 +189,7 @@ void ImpactPass::run_task(std::size_t task, std::uint32_t w) {
                                       });
   constexpr std::size_t many = 256;
   keep_first(first, many, worker);
-  set_outcome();
+  end_task(task, ranges, worker);
 }
 
 void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
@@ -306,7 +268,7 @@ bool ImpactPass::is_excluded(std::uint32_t job, ElementPairKind kind, ElementPai
   const MovingObject& b = objects_[jobs_[job].b];
   if (kind == ElementPairKind::edge_edge) sort_edges(objects_of(kind, a, b), vertices);
   const std::optional<ElementNames> names = names_of(kind, candidate, vertices, a, b);
-  return !names || limit_.excludes(place_of(job, names->kind, names->a[0]));
+  return !names || limit_.excludes(place_of_element(job, names->kind, names->a[0]));
 }
 
 void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair,
@@ -346,16 +308,11 @@ void ImpactPass::search_until(double time) {
   }
 }
 
-/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
-void ImpactPass::drop_excess(std::uint32_t job, std::size_t first, Worker& worker) {
-  if (!limit_.drops_at(worker.found.size() - first)) return;
-  const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto last = begin + static_cast<std::ptrdiff_t>(limit_.wanted() - 1);
-  std::nth_element(
-      begin, last, worker.found.end(),
-      [](const ContinuousContact& p, const ContinuousContact& q) { return order_of(p) < order_of(q); });
-  limit_.exclude_after(place_of(job, last->kind, last->element_a[0]));
-  worker.found.erase(last + 1, worker.found.end());
+bool ImpactPass::is_before(const ContinuousContact& p, const ContinuousContact& q) {
+  return order_of(p) < order_of(q);
+}
+std::uint64_t ImpactPass::place_of(std::uint32_t job, const ContinuousContact& contact) {
+  return place_of_element(job, contact.kind, contact.element_a[0]);
 }
 
 /// Keeps only those contacts of one task that may be listed, once the task has at least `least` contacts.
@@ -367,65 +324,22 @@ void ImpactPass::keep_first(std::size_t first, std::size_t least, Worker& worker
   worker.keep_first_at = std::max(least_to_keep_first, 2 * (worker.found.size() - first));
 }
 
-std::size_t ImpactPass::largest_buffer() const {
-  std::size_t largest = 0;
-  for (const Worker& worker : workers_) largest = std::max(largest, worker.found.capacity());
-  return largest;
-}
-
-/// Jobs are in canonical order. Each job gets its range of the list; its contacts are sorted there. All
-/// workers share a job with many contacts.
-void ImpactPass::gather_contacts(const Parallel& parallel) {
-  constexpr std::uint32_t many = 8192;
-  outcomes_.place(tasks_.tasks());
-  outcomes_.move_known<0>(contacts_);
-  const auto has_many = [&](std::size_t job) { return outcomes_.ranges(job)[0].count >= many; };
-  parallel.for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    for (std::size_t job = begin; job < end; ++job) {
-      if (!outcomes_.is_known(job) && !has_many(job)) gather_found(job, workers_[w], Parallel(1));
-    }
-  });
-  for (std::size_t job = 0; job < outcomes_.size(); ++job) {
-    if (!outcomes_.is_known(job) && has_many(job)) gather_found(job, workers_[0], parallel);
-  }
-  outcomes_.complete();
-}
-
-/// Counts the contacts into buckets by kind and first id, a few in each, and sorts each bucket.
 void ImpactPass::gather_found(std::size_t job, Worker& worker, const Parallel& parallel) {
-  constexpr std::size_t contacts_of_bucket = 4;
-  worker.keys.clear();
-  std::uint64_t ids = 1, kinds = 1;
-  for (const auto& task : outcomes_.tasks_of(job)) {
-    for (std::uint32_t i = task.ranges[0].first; i < task.ranges[0].end(); ++i) {
-      const ContinuousContact& contact = workers_[task.worker].found[i];
-      worker.keys.push_back({contact.kind, contact.element_a, contact.element_b, task.worker, i});
-      ids = std::max(ids, std::uint64_t{contact.element_a[0]} + 1);
-      kinds = std::max(kinds, static_cast<std::uint64_t>(contact.kind) + 1);
-    }
-  }
-  const auto id_bits = static_cast<int>(std::bit_width(kinds * ids));
-  const auto count_bits = static_cast<int>(std::bit_width(worker.keys.size() / contacts_of_bucket));
-  const int shift = std::max(id_bits - count_bits, 0);
-  const auto bucket_of = [&](const Key& key) {
-    return static_cast<std::size_t>((static_cast<std::uint64_t>(key.kind) * ids + key.element_a[0]) >> shift);
-  };
-  const auto buckets = static_cast<std::size_t>((kinds * ids - 1) >> shift) + 1;
-  // Counts of the buckets before, then where each bucket begins, and in the end where it ends.
-  std::vector<std::uint32_t>& firsts = worker.first_of_bucket;
-  firsts.assign(buckets + 1, 0);
-  for (const Key& key : worker.keys) ++firsts[bucket_of(key) + 1];
-  for (std::size_t b = 0; b < buckets; ++b) firsts[b + 1] += firsts[b];
-  worker.sorted_keys.resize(worker.keys.size());
-  for (const Key& key : worker.keys) worker.sorted_keys[firsts[bucket_of(key)]++] = key;
-  ContinuousContact* const contacts = contacts_.data() + outcomes_.ranges(job)[0].first;
-  parallel.for_ranges(buckets, 256, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const std::uint32_t first = b == 0 ? 0 : firsts[b - 1], last = firsts[b];
-      std::sort(worker.sorted_keys.begin() + first, worker.sorted_keys.begin() + last);
-      for (std::uint32_t i = first; i < last; ++i)
-        contacts[i] = workers_[worker.sorted_keys[i].worker].found[worker.sorted_keys[i].index];
-    }
+  using Key = ImpactWorker::Key;
+  worker.order.sort(
+      [&](const auto& visit) {
+        for_each_found(job, [&](const ContinuousContact& contact, std::uint32_t finder, std::uint32_t i) {
+          visit(Key{contact.kind, contact.element_a, contact.element_b, finder, i});
+        });
+      },
+      [](const Key& key) {
+        return SortKey{static_cast<std::uint32_t>(key.kind), key.element_a[0]};
+      },
+      std::less<>(), parallel, worker.sorted);
+  const std::size_t first = outcomes_.ranges(job)[0].first;
+  parallel.for_ranges(worker.sorted.size(), 1024, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      records_[first + i] = workers_[worker.sorted[i].worker].found[worker.sorted[i].index];
   });
 }
 

@@ -9,18 +9,15 @@
 #include <span>
 #include <vector>
 
-#include "answers/contact_limit.hpp"
-#include "answers/contact_tasks.hpp"
 #include "answers/element_candidates.hpp"
 #include "answers/first_contacts.hpp"
-#include "answers/job_outcomes.hpp"
+#include "answers/pass.hpp"
 #include "answers/search_options.hpp"
 #include "contact/impact/impact_filter.hpp"
 #include "contact/impact/relative_motion.hpp"
 #include "contact/intersection/coplanar_search.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
-#include "narrow_phase/traversal.hpp"
 #include "supple/contact.hpp"
 #include "supple/options.hpp"
 #include "supple/result.hpp"
@@ -33,9 +30,55 @@ inline LimitingPair pair_of_contact(const ContinuousContact& contact) {
   return {contact.object_a, contact.object_b, contact.kind, contact.element_a, contact.element_b};
 }
 
+/// What a worker of `ImpactPass` has.
+struct ImpactWorker : PassWorker<ContinuousContact> {
+  /// A pair of elements that passed the filter.
+  struct OpenPair {
+    ElementPair candidate;
+    std::array<std::uint32_t, 4> vertices;
+    ElementMotion motion;
+    RelativeMotion relative;
+  };
+  /// A contact without its numbers, and where it is stored.
+  struct Key {
+    ElementPairKind kind = ElementPairKind::vertex_face;
+    std::array<std::uint32_t, 2> element_a{}, element_b{};
+    std::uint32_t worker = 0, index = 0;
+
+    auto operator<=>(const Key&) const = default;
+  };
+  struct Earliest {
+    ContinuousContact contact;
+    std::uint32_t job = 0;
+  };
+  /// A pair that limits the step of a job, and the part of the step that it leaves.
+  struct StepLimit {
+    std::uint32_t job = 0;
+    double time = 1;
+    LimitingPair pair;
+  };
+
+  RelativeMotionBlock block;
+  std::array<OpenPair, RelativeMotionBlock::capacity> open;  // pairs of one block of candidates
+  MotionBlock motions;                                       // of these pairs
+  CoplanarSearch coplanar;
+  FirstContacts first_contacts;
+  std::size_t keep_first_at = 0;  // number of contacts of the present task
+  std::optional<Earliest> earliest;
+  std::vector<StepLimit> limits;         // the first of the job of each task
+  std::vector<std::uint32_t> near_jobs;  // with elements so near that rounded positions could touch
+  std::vector<Key> sorted;               // of the contacts of one job
+
+  void start() {
+    earliest.reset();
+    limits.clear();
+    near_jobs.clear();
+  }
+};
+
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
-/// phase hands its candidates to the exact stage in batches. The pass keeps its memory between steps.
-class ImpactPass {
+/// phase hands its candidates to the exact stage in batches.
+class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, ContinuousContact> {
  public:
   /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. `jobs` ascend and
   /// contain indices of `objects`; `versions` are those of the objects' positions. Returns false when it was
@@ -60,59 +103,15 @@ class ImpactPass {
                                           const ImpactSearchOptions& options, const StepOptions& step,
                                           const Parallel& parallel);
 
-  std::span<const ContactGroup> groups() const { return groups_; }
   std::span<const ContinuousContact> contacts() const {
-    return lists_first() ? first_contacts_.contacts() : contacts_;
+    return lists_first() ? first_contacts_.contacts() : records_;
   }
-  /// There are more than `max_contacts` contacts.
-  bool is_truncated() const { return is_truncated_; }
-  /// The most contacts that a worker has held at once since it was made.
-  std::size_t largest_buffer() const;
 
  private:
-  /// Orders the contacts of a job canonically and says where each is stored.
-  struct Key {
-    ElementPairKind kind = ElementPairKind::vertex_face;
-    std::array<std::uint32_t, 2> element_a{}, element_b{};
-    std::uint32_t worker = 0, index = 0;
-
-    auto operator<=>(const Key&) const = default;
-  };
-  struct Earliest {
-    ContinuousContact contact;
-    std::uint32_t job = 0;
-  };
-  /// A pair of elements that passed the filter.
-  struct OpenPair {
-    ElementPair candidate;
-    std::array<std::uint32_t, 4> vertices;
-    ElementMotion motion;
-    RelativeMotion relative;
-  };
-  /// A pair that limits the step of a job, and the part of the step that it leaves.
-  struct StepLimit {
-    std::uint32_t job = 0;
-    double time = 1;
-    LimitingPair pair;
-  };
-  struct Worker {
-    std::size_t last_task = no_task;
-    Traversal traversal;
-    RelativeMotionBlock block;
-    std::array<OpenPair, RelativeMotionBlock::capacity> open;  // pairs of one block of candidates
-    MotionBlock motions;                                       // of these pairs
-    CoplanarSearch coplanar;
-    std::vector<ContinuousContact> found;  // by all tasks of the worker
-    FirstContacts first_contacts;
-    std::size_t keep_first_at = 0;  // number of contacts of the present task
-    TaskStats stats;
-    std::optional<Earliest> earliest;
-    std::vector<StepLimit> limits;         // the first of the job of each task
-    std::vector<std::uint32_t> near_jobs;  // with elements so near that rounded positions could touch
-    // Scratch for the contacts of one job.
-    std::vector<Key> keys, sorted_keys;
-    std::vector<std::uint32_t> first_of_bucket;
-  };
+  friend Pass;
+  using OpenPair = ImpactWorker::OpenPair;
+  using Earliest = ImpactWorker::Earliest;
+  using StepLimit = ImpactWorker::StepLimit;
   /// `touching`: the earliest contact without any separation. `safe_step`: the parts of the step that keep
   /// distances. `free`: those that also keep them when both objects move by other parts. `rounded`: contacts
   /// on the ways to the rounded positions at these parts.
@@ -121,8 +120,6 @@ class ImpactPass {
   /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`, until a time in the step.
   void search(Search search, std::span<const std::uint32_t> jobs, float until, const Parallel& parallel);
   const Earliest* earliest_of_workers() const;
-  void start(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-             const ImpactSearchOptions& options, const StopSignal& stop);
   ImpactOptions impact_of_job(std::uint32_t job) const;
   /// The distance within which the pass searches, and what a safe step adds to it over the whole step: a
   /// share of the largest approach.
@@ -133,7 +130,7 @@ class ImpactPass {
   double rounding_of_job(std::uint32_t job) const;
   double largest_approach(std::uint32_t job) const;
   ObjectPairView view_of_job(std::uint32_t job) const;
-  void run_task(std::size_t task, std::uint32_t worker);
+  void run_task(std::size_t task, Worker& worker);
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
   bool is_excluded(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
@@ -141,7 +138,7 @@ class ImpactPass {
   void decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count, Worker& worker);
   void limit_step(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, Worker& worker);
   std::optional<double> limit_of(std::uint32_t job, const OpenPair& pair, Worker& worker);
-  static bool is_before(const StepLimit& p, const StepLimit& q);
+  static bool limits_before(const StepLimit& p, const StepLimit& q);
   void start_steps(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
                    const ImpactSearchOptions& options, const StepOptions& step);
   void list_limits();
@@ -159,22 +156,16 @@ class ImpactPass {
   bool has_exact_limit() const { return options_.max_exact_bits < most_exact_bits; }
   /// Whether exact arithmetic may decide the pair.
   bool may_be_exact(const OpenPair& pair, double separation) const;
-  void drop_excess(std::uint32_t job, std::size_t first, Worker& worker);
+  static bool is_before(const ContinuousContact& p, const ContinuousContact& q);
+  static std::uint64_t place_of(std::uint32_t job, const ContinuousContact& contact);
   bool lists_first() const { return options_.listing == ContinuousListing::first; }
   void keep_first(std::size_t first, std::size_t least, Worker& worker) const;
-  void gather_contacts(const Parallel& parallel);
+  void move_known() { outcomes_.move_known<0>(records_); }
   void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);
 
   Search search_ = Search::all;
-  std::span<const ContactJob> jobs_;
-  std::span<const MovingObject> objects_;
   ImpactSearchOptions options_;
   StepOptions step_;
-  StopSignal stop_;
-  std::vector<Worker> workers_;
-  ContactTasks tasks_;
-  ContactLimit limit_;
-  JobOutcomes<1> outcomes_;
   ImpactSearchOptions last_options_;     // of the last `run`
   std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
   // Safe steps: the first limit of each job, the free parts by job, and by object the islands as a forest.
@@ -187,11 +178,7 @@ class ImpactPass {
   bool ends_early_ = false;  ///< the search needs no limits after the first
   /// `find_earliest` skips pairs that cannot touch before this time.
   std::atomic<float> latest_ = 1;
-
-  std::vector<ContactGroup> groups_;
-  std::vector<ContinuousContact> contacts_;
   FirstContacts first_contacts_;
-  bool is_truncated_ = false;
 };
 
 }  // namespace supple

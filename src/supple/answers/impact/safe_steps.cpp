@@ -94,7 +94,8 @@ std::vector<ObjectStep> ImpactPass::find_safe_steps(std::span<const ContactJob> 
 
 void ImpactPass::start_steps(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
                              const ImpactSearchOptions& options, const StepOptions& step) {
-  start(jobs, objects, options, {});
+  begin(jobs, objects, {});
+  options_ = options;
   step_ = step;
   options_.impact.max_time = 1;
   limit_.start(ContactLimit::unlimited, 0);
@@ -213,7 +214,7 @@ void ImpactPass::limit_step(std::uint32_t job, ElementPairKind kind, const OpenP
       job, *time, {objects_[jobs_[job].a].id, objects_[jobs_[job].b].id, names->kind, names->a, names->b}};
   if (worker.limits.empty() || worker.limits.back().job != job) {
     worker.limits.push_back(limit);
-  } else if (is_before(limit, worker.limits.back())) {
+  } else if (limits_before(limit, worker.limits.back())) {
     worker.limits.back() = limit;
   } else {
     return;
@@ -222,7 +223,7 @@ void ImpactPass::limit_step(std::uint32_t job, ElementPairKind kind, const OpenP
 }
 
 /// The order of limits: by job, then by time.
-bool ImpactPass::is_before(const StepLimit& p, const StepLimit& q) {
+bool ImpactPass::limits_before(const StepLimit& p, const StepLimit& q) {
   const auto key = [](const StepLimit& limit) {
     return std::tie(limit.job, limit.time, limit.pair.kind, limit.pair.element_a, limit.pair.element_b);
   };
@@ -234,7 +235,7 @@ void ImpactPass::list_limits() {
   limits_.clear();
   for (const Worker& worker : workers_)
     limits_.insert(limits_.end(), worker.limits.begin(), worker.limits.end());
-  std::sort(limits_.begin(), limits_.end(), is_before);
+  std::sort(limits_.begin(), limits_.end(), limits_before);
   const auto is_same_job = [](const StepLimit& p, const StepLimit& q) { return p.job == q.job; };
   limits_.erase(std::unique(limits_.begin(), limits_.end(), is_same_job), limits_.end());
 }

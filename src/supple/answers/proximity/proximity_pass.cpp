@@ -1,6 +1,7 @@
 #include "answers/proximity/proximity_pass.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -74,52 +75,37 @@ std::array<std::uint8_t, 4> points_of_features(const ClosestFeatures& features) 
 
 }  // namespace
 
+void ProximityWorker::start() {
+  runs.clear();
+  run_first = 0;
+  merge_at = least_merge;
+  is_full = false;
+  FoundPair none;
+  none.job = no_job;
+  recent.fill(none);
+}
+
 bool ProximityPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
                         std::span<const std::uint64_t> versions, const ProximitySearch& search,
                         std::uint64_t max_pairs, const StopSignal& stop, const Parallel& parallel,
                         StepStats& stats) {
-  Timer timer;
-  jobs_ = jobs;
-  objects_ = objects;
-  stop_ = stop;
-  outcomes_.plan(jobs, versions, search == search_);
-  search_ = search;
+  begin(jobs, objects, stop);
+  const bool is_same_search = std::exchange(search_, search) == search;
   max_pairs_ = max_pairs;
-  workers_.resize(parallel.worker_count());
-  Found none;
-  none.job = no_job;
-  for (Worker& worker : workers_) {
-    worker.traversal.set_stop(stop);
-    worker.found.clear();
-    worker.runs.clear();
-    worker.run_first = 0;
-    worker.merge_at = least_merge;
-    worker.is_full = false;
-    worker.recent.fill(none);
-    worker.stats = {};
-  }
-  tasks_.plan(outcomes_.open_jobs(), workers_.size(), workers_[0].traversal,
-              [&](std::uint32_t job) { return view_of_job(job); });
-  outcomes_.expect_tasks(tasks_.tasks().size());
-  tasks_.run(parallel, workers_, stop, [&](std::size_t task, std::uint32_t w) { run_task(task, w); });
-  add_stats(workers_, timer.lap(), stats);
+  // Two workers may find the same pair, so `limit_` cannot count them; each worker has its own limit.
+  if (!run_open_jobs(versions, is_same_search, ContactLimit::unlimited, parallel, stats)) return false;
   for (Worker& worker : workers_) worker.stats = {};
-  if (stop.stop_requested()) return false;
+  Timer timer;
   sort_found(parallel);
   outcomes_.place(tasks_.tasks());
-  outcomes_.move_known<0>(pairs_);
+  outcomes_.move_known<0>(records_);
   stats.sort_and_events_seconds += timer.lap();
   compute_found(parallel);
   for (const Worker& worker : workers_) stats.exact_fallbacks += worker.stats.exact_fallbacks;
   stats.exact_seconds += timer.lap();
   outcomes_.complete();
-  is_truncated_ = pairs_.size() > max_pairs;
-  if (is_truncated_) {
-    outcomes_.truncate(max_pairs);
-    pairs_.resize(static_cast<std::size_t>(max_pairs));
-  }
-  outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
-  stats.proximity_pairs += pairs_.size();
+  end(max_pairs);
+  stats.proximity_pairs += records_.size();
   stats.sort_and_events_seconds += timer.lap();
   return true;
 }
@@ -133,13 +119,11 @@ ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
   return pair;
 }
 
-void ProximityPass::run_task(std::size_t task, std::uint32_t w) {
-  const ContactTask& contact_task = tasks_.tasks()[task];
-  const std::uint32_t job = contact_task.job;
-  Worker& worker = workers_[w];
+void ProximityPass::run_task(std::size_t task, Worker& worker) {
+  const auto& [job, root] = tasks_.tasks()[task];
   outcomes_.of_task(task) = {};  // `sort_found` counts the pairs
   if (worker.is_full && worker.last.job < job) return;
-  worker.traversal.find_element_pairs(view_of_job(job), contact_task.root, worker.stats.traversal,
+  worker.traversal.find_element_pairs(view_of_job(job), root, worker.stats.traversal,
                                       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
                                         Timer timer;
                                         test_candidates(job, kind, candidates, worker);
@@ -201,11 +185,11 @@ void ProximityPass::add(std::uint32_t job, ElementPairKind kind, ElementPair can
 }
 
 /// Adds the candidate, unless it is one of the recent ones again or comes after all pairs of the result.
-void ProximityPass::keep(const Found& found, Worker& worker) const {
+void ProximityPass::keep(const FoundPair& found, Worker& worker) const {
   if (worker.is_full && worker.last < found) return;
   const auto& [kind_a, kind_b, element_a, element_b] = found.name;
   const std::uint32_t hash = (element_a[0] * 31 + element_a[1]) * 31 + element_b[0] * 7 + element_b[1];
-  Found& recent = worker.recent[hash % worker.recent.size()];
+  FoundPair& recent = worker.recent[hash % worker.recent.size()];
   if (recent == found) return;
   recent = found;
   worker.found.push_back(found);
@@ -215,7 +199,7 @@ void ProximityPass::keep(const Found& found, Worker& worker) const {
 /// Keeps one candidate of each name, of the first `max_pairs_` names and one more, which shows that there are
 /// more.
 void ProximityPass::merge(Worker& worker) const {
-  std::vector<Found>& found = worker.found;
+  std::vector<FoundPair>& found = worker.found;
   sort_once(found);
   if (found.size() > max_pairs_) {
     found.resize(static_cast<std::size_t>(max_pairs_) + 1);
@@ -229,12 +213,6 @@ void ProximityPass::merge(Worker& worker) const {
   }
   worker.run_first = static_cast<std::uint32_t>(found.size());
   worker.merge_at = std::max(least_merge, 2 * found.size());
-}
-
-std::size_t ProximityPass::largest_buffer() const {
-  std::size_t largest = 0;
-  for (const Worker& worker : workers_) largest = std::max(largest, worker.found.capacity());
-  return largest;
 }
 
 PairOrder ProximityPass::order_of(std::uint32_t job, ElementPairKind kind) const {
@@ -291,15 +269,15 @@ void ProximityPass::compute_found(const Parallel& parallel) {
   parallel.for_ranges(blocks_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (const auto& [open, first] : std::span(blocks_).subspan(begin, end - begin)) {
       const std::uint32_t job = outcomes_.open_jobs()[open];
-      const auto rest = std::span<const Found>(sorted_[open]).subspan(first);
+      const auto rest = std::span<const FoundPair>(sorted_[open]).subspan(first);
       compute_pairs(job, rest.first(std::min(block_size, rest.size())), workers_[w],
-                    pairs_.data() + outcomes_.ranges(job)[0].first + first);
+                    records_.data() + outcomes_.ranges(job)[0].first + first);
     }
   });
 }
 
 /// Computes the pairs of one block.
-void ProximityPass::compute_pairs(std::uint32_t job, std::span<const Found> found, Worker& worker,
+void ProximityPass::compute_pairs(std::uint32_t job, std::span<const FoundPair> found, Worker& worker,
                                   ProximityPair* pairs) {
   const ObjectPair objects{objects_[jobs_[job].a].id, objects_[jobs_[job].b].id};
   std::array<std::size_t, block_size> members;
@@ -307,7 +285,7 @@ void ProximityPass::compute_pairs(std::uint32_t job, std::span<const Found> foun
        {FeaturePair::vertices, FeaturePair::vertex_edge, FeaturePair::vertex_face, FeaturePair::edges}) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const Found& pair = found[i];
+      const FoundPair& pair = found[i];
       if (feature_pair_of(pair.features, pair.kind == ElementPairKind::edge_edge) != kind) continue;
       worker.elements[count] = with_points(job, pair.kind, elements_of(job, pair.kind, pair.candidate));
       const auto& [first, second] = worker.elements[count];
@@ -322,7 +300,7 @@ void ProximityPass::compute_pairs(std::uint32_t job, std::span<const Found> foun
     if (count == 0) continue;
     compute_distance_numbers(worker.block, count, kind, worker.numbers);
     for (std::size_t m = 0; m < count; ++m) {
-      const Found& pair = found[members[m]];
+      const FoundPair& pair = found[members[m]];
       const auto& [first, second] = worker.elements[m];
       const ElementPoints points = points_of(first, second);
       bool used_exact = false;
@@ -341,11 +319,11 @@ void ProximityPass::sort_found(const Parallel& parallel) {
   const std::span<const std::uint32_t> open_jobs = outcomes_.open_jobs();
   const std::span<const ContactTask> tasks = tasks_.tasks();
   if (sorted_.size() < open_jobs.size()) sorted_.resize(open_jobs.size());
-  for (std::vector<Found>& sorted : sorted_) sorted.clear();
-  for (Worker& worker : workers_) std::ranges::sort(worker.runs, {}, &Run::job);
+  for (std::vector<FoundPair>& sorted : sorted_) sorted.clear();
+  for (Worker& worker : workers_) std::ranges::sort(worker.runs, {}, &ProximityWorker::Run::job);
   parallel.for_ranges(open_jobs.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t open = begin; open < end; ++open) {
-      sort_job(open_jobs[open], workers_[w].bin_ends, sorted_[open]);
+      sort_job(open_jobs[open], workers_[w].order, sorted_[open]);
       const auto task = std::ranges::lower_bound(tasks, open_jobs[open], {}, &ContactTask::job);
       if (task == tasks.end() || task->job != open_jobs[open]) continue;
       outcomes_.of_task(static_cast<std::size_t>(task - tasks.begin())).ranges[0].count =
@@ -354,47 +332,22 @@ void ProximityPass::sort_found(const Parallel& parallel) {
   });
 }
 
-/// Sorts by the first element and its kinds in linear time, then the few pairs of each.
-void ProximityPass::sort_job(std::uint32_t job, std::vector<std::uint32_t>& bin_ends,
-                             std::vector<Found>& sorted) const {
-  std::size_t count = 0, ids = 0;
-  const auto for_each_found = [&](const auto& visit) {
+/// Lists each pair of the job once, in canonical order.
+void ProximityPass::sort_job(std::uint32_t job, BucketSort& order, std::vector<FoundPair>& sorted) const {
+  const auto for_each = [&](const auto& visit) {
     for (const Worker& worker : workers_) {
-      auto run = std::ranges::lower_bound(worker.runs, job, {}, &Run::job);
+      auto run = std::ranges::lower_bound(worker.runs, job, {}, &ProximityWorker::Run::job);
       for (; run != worker.runs.end() && run->job == job; ++run) {
         for (std::uint32_t i = run->first; i < run->end; ++i) visit(worker.found[i]);
       }
     }
   };
-  for_each_found([&](const Found& found) {
-    ++count;
-    ids = std::max(ids, found.name.element_a[0] + std::size_t{1});
-  });
-  // Few pairs are in one bin.
-  if (count < ids) ids = 0;
-  const auto bin_of = [&](const PairName& name) {
-    return ids == 0
-               ? 0
-               : (3 * static_cast<std::size_t>(name.kind_a) + static_cast<std::size_t>(name.kind_b)) * ids +
-                     name.element_a[0];
+  const auto key_of = [](const FoundPair& found) {
+    const auto& [kind_a, kind_b, element_a, element_b] = found.name;
+    return SortKey{3 * static_cast<std::uint32_t>(kind_a) + static_cast<std::uint32_t>(kind_b), element_a[0]};
   };
-  bin_ends.assign(9 * ids + 1, 0);
-  for_each_found([&](const Found& found) { ++bin_ends[bin_of(found.name)]; });
-  std::uint32_t begin = 0;
-  for (std::uint32_t& end : bin_ends) begin += std::exchange(end, begin);
-  sorted.resize(count);
-  for_each_found([&](const Found& found) { sorted[bin_ends[bin_of(found.name)]++] = found; });
-  begin = 0;
-  auto last = sorted.begin();
-  for (const std::uint32_t end : bin_ends) {
-    const auto first = sorted.begin() + begin, behind = sorted.begin() + end;
-    std::sort(first, behind, [](const Found& p, const Found& q) { return p.name < q.name; });
-    const auto unique_end =
-        std::unique(first, behind, [](const Found& p, const Found& q) { return p.name == q.name; });
-    last = first == last ? unique_end : std::copy(first, unique_end, last);
-    begin = end;
-  }
-  sorted.erase(last, sorted.end());
+  order.sort(for_each, key_of, std::less<>(), Parallel(1), sorted);
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
 }
 
 }  // namespace supple

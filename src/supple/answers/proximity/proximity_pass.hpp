@@ -7,14 +7,12 @@
 #include <span>
 #include <vector>
 
-#include "answers/contact_tasks.hpp"
 #include "answers/element_candidates.hpp"
-#include "answers/job_outcomes.hpp"
+#include "answers/pass.hpp"
 #include "answers/search_options.hpp"
 #include "contact/distance/distance_kernels.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
-#include "narrow_phase/traversal.hpp"
 #include "queries/pairs/proximity_pair.hpp"
 #include "supple/proximity.hpp"
 #include "supple/result.hpp"
@@ -29,10 +27,45 @@ struct ProximitySearch {
   constexpr bool operator==(const ProximitySearch&) const = default;
 };
 
-/// Narrow phase and exact stage of proximity for all jobs of a step, on all workers. The pass keeps its
-/// memory between steps. It is proportional to the pairs of the result: a worker merges candidates with the
-/// same features when its buffer is full, and drops those after the first `max_pairs`.
-class ProximityPass {
+/// A pair within the margins. Several candidates may have the same closest features, and so the same name and
+/// the same numbers, which are computed for one of them.
+struct FoundPair {
+  std::uint32_t job = 0;
+  PairName name;
+  ElementPairKind kind{};
+  ClosestFeatures features;  // of the elements of `ProximityPass::elements_of`
+  ElementPair candidate;
+
+  bool operator<(const FoundPair& other) const {
+    return job != other.job ? job < other.job : name < other.name;
+  }
+  bool operator==(const FoundPair& other) const { return job == other.job && name == other.name; }
+};
+
+/// What a worker of `ProximityPass` has.
+struct ProximityWorker : PassWorker<FoundPair> {
+  /// Candidates of one job that follow each other in `found`.
+  struct Run {
+    std::uint32_t job = 0, first = 0, end = 0;
+  };
+
+  PointsBlock block;
+  DistanceNumbersBlock numbers;
+  std::array<std::array<PairElement, 2>, PointsBlock::capacity> elements;
+  std::vector<Run> runs;        // of finished tasks, or of what was merged
+  std::uint32_t run_first = 0;  // where the present task began to add candidates after those
+  std::size_t merge_at = 0;     // size of `found`
+  bool is_full = false;         // nothing after the last of what was merged is needed
+  FoundPair last;
+  std::array<FoundPair, 256> recent;  // some of the candidates that were added before
+
+  void start();
+};
+
+/// Narrow phase and exact stage of proximity for all jobs of a step, on all workers. The memory is
+/// proportional to the pairs of the result: a worker merges candidates with the same features when its buffer
+/// is full, and drops those after the first `max_pairs`.
+class ProximityPass : public Pass<ProximityPass, MovingObject, ProximityWorker, ProximityPair> {
  public:
   /// Finds the first `max_pairs` pairs in canonical order. `jobs` ascend and contain indices of `objects`,
   /// which are at rest; `versions` are those of the objects' positions and margins. Returns false when it was
@@ -41,56 +74,19 @@ class ProximityPass {
            std::span<const std::uint64_t> versions, const ProximitySearch& search, std::uint64_t max_pairs,
            const StopSignal& stop, const Parallel& parallel, StepStats& stats);
 
-  std::span<const ContactGroup> groups() const { return groups_; }
-  std::span<const ProximityPair> pairs() const { return pairs_; }
-  /// There are more than `max_pairs` pairs.
-  bool is_truncated() const { return is_truncated_; }
-  /// The most candidates that a worker has held at once since it was made.
-  std::size_t largest_buffer() const;
+  std::span<const ProximityPair> pairs() const { return records_; }
 
  private:
-  /// A pair within the margins. Several candidates may have the same closest features, and so the same name
-  /// and the same numbers, which are computed for one of them.
-  struct Found {
-    std::uint32_t job = 0;
-    PairName name;
-    ElementPairKind kind{};
-    ClosestFeatures features;  // of the elements of `elements_of`
-    ElementPair candidate;
-
-    bool operator<(const Found& other) const {
-      return job != other.job ? job < other.job : name < other.name;
-    }
-    bool operator==(const Found& other) const { return job == other.job && name == other.name; }
-  };
-  /// Candidates of one job that follow each other in the list of a worker.
-  struct Run {
-    std::uint32_t job = 0, first = 0, end = 0;
-  };
+  friend Pass;
   /// The elements of a candidate in the order of `ElementPoints`.
   struct Elements {
     ElementIds first, second;
     std::array<std::uint32_t, 4> vertices;  // of first, then of second, in the order of their corners
     bool is_swapped = false;  // two edges of one object, in the other order than the candidate's
   };
-  struct Worker {
-    Traversal traversal;
-    PointsBlock block;
-    DistanceNumbersBlock numbers;
-    std::array<std::array<PairElement, 2>, PointsBlock::capacity> elements;
-    std::vector<Found> found;     // by all tasks of the worker
-    std::vector<Run> runs;        // of finished tasks, or of what was merged
-    std::uint32_t run_first = 0;  // where the present task began to add candidates after those
-    std::size_t merge_at = 0;     // size of `found`
-    bool is_full = false;         // nothing after the last of what was merged is needed
-    Found last;
-    std::array<Found, 256> recent;        // some of the candidates that were added before
-    std::vector<std::uint32_t> bin_ends;  // scratch of `sort_job`
-    TaskStats stats;
-  };
 
   ObjectPairView view_of_job(std::uint32_t job) const;
-  void run_task(std::size_t task, std::uint32_t worker);
+  void run_task(std::size_t task, Worker& worker);
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
   void add(std::uint32_t job, ElementPairKind kind, ElementPair candidate, FeatureCode code, Worker& worker);
@@ -98,30 +94,22 @@ class ProximityPass {
   std::array<PairElement, 2> with_points(std::uint32_t job, ElementPairKind kind,
                                          const Elements& elements) const;
   PairOrder order_of(std::uint32_t job, ElementPairKind kind) const;
-  void sort_found(const Parallel& parallel);
-  void sort_job(std::uint32_t job, std::vector<std::uint32_t>& bin_ends, std::vector<Found>& sorted) const;
-  void keep(const Found& found, Worker& worker) const;
+  void keep(const FoundPair& found, Worker& worker) const;
   void merge(Worker& worker) const;
+  void sort_found(const Parallel& parallel);
+  void sort_job(std::uint32_t job, BucketSort& order, std::vector<FoundPair>& sorted) const;
   void compute_found(const Parallel& parallel);
-  void compute_pairs(std::uint32_t job, std::span<const Found> found, Worker& worker, ProximityPair* pairs);
+  void compute_pairs(std::uint32_t job, std::span<const FoundPair> found, Worker& worker,
+                     ProximityPair* pairs);
 
-  std::span<const ContactJob> jobs_;
-  std::span<const MovingObject> objects_;
   ProximitySearch search_;
-  StopSignal stop_;
   std::uint64_t max_pairs_ = 0;
-  std::vector<Worker> workers_;
-  ContactTasks tasks_;
-  JobOutcomes<1> outcomes_;
   /// Part of a list of `sorted_`.
   struct Block {
     std::uint32_t open = 0, first = 0;
   };
   std::vector<Block> blocks_;
-  std::vector<std::vector<Found>> sorted_;  // of each open job, each name once
-  std::vector<ContactGroup> groups_;
-  std::vector<ProximityPair> pairs_;
-  bool is_truncated_ = false;
+  std::vector<std::vector<FoundPair>> sorted_;  // of each open job, each name once
 };
 
 }  // namespace supple

@@ -1,4 +1,4 @@
-#include "answers/intersection/contact_pass.hpp"
+#include "answers/intersection/intersection_pass.hpp"
 
 #include <hwy/cache_control.h>
 
@@ -53,73 +53,34 @@ std::span<const TrianglePair> in_order_of_results(std::span<const TrianglePair> 
 
 }  // namespace
 
-bool ContactPass::run(std::span<const ContactJob> jobs, std::span<const ContactObject> objects,
-                      std::span<const std::uint64_t> versions, const ContactSearch& search,
-                      std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
-                      StepStats& stats) {
-  objects_ = objects;
+bool IntersectionPass::run(std::span<const ContactJob> jobs, std::span<const IntersectedObject> objects,
+                           std::span<const std::uint64_t> versions, const IntersectionSearch& search,
+                           std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
+                           StepStats& stats) {
+  begin(jobs, objects, stop);
   // Colliding vertices are not reused from the previous step.
-  const bool is_same_search = search == search_ && !search.colliding_vertices;
-  search_ = search;
-  stop_ = stop;
-  workers_.resize(parallel.worker_count());
-  for (std::size_t w = 0; w < workers_.size(); ++w) {
-    Worker& worker = workers_[w];
-    worker.number = static_cast<std::uint16_t>(w);
-    worker.last_task = no_task;
-    worker.traversal.set_stop(stop);
-    worker.found.clear();
-    worker.details.clear();
-    worker.crossing_count = 0;
-    worker.unfinished.clear();
-    worker.points.clear();
-    worker.leaves.clear();
-    worker.stats = {};
-  }
+  const bool is_same_search = std::exchange(search_, search) == search && !search.colliding_vertices;
+  if (!run_open_jobs(versions, is_same_search, max_contacts, parallel, stats)) return false;
   Timer timer;
-  outcomes_.plan(jobs, versions, is_same_search);
-  limit_.start(max_contacts, jobs.size());
-  for (std::uint32_t job = 0; limit_.is_set() && job < jobs.size(); ++job)
-    limit_.add(job, outcomes_.ranges(job)[of_contacts].count);
-  tasks_.plan(outcomes_.open_jobs(), workers_.size(), workers_[0].traversal,
-              [&](std::uint32_t job) { return view_of_job(job); });
-  outcomes_.expect_tasks(tasks_.tasks().size());
-  tasks_.run(parallel, workers_, stop,
-             [&](std::size_t task, std::uint32_t w) { run_task(task, workers_[w]); });
-  add_stats(workers_, timer.lap(), stats);
-  if (stop.stop_requested()) return false;
-  gather_contacts(parallel);
-  truncate(max_contacts);
-  outcomes_.list_groups(groups_, [&](std::uint32_t object) { return objects_[object].id; });
+  gather(parallel);
+  end(max_contacts);
+  if (is_truncated() && search_.contact_points)
+    points_.resize(records_.empty() ? 0 : records_.back().first_point + records_.back().point_count);
   gather_colliding_vertices();
-  stats.contacts += contacts_.size();
+  stats.contacts += records_.size();
   stats.sort_and_events_seconds += timer.lap();
   return true;
 }
 
-ObjectPairView ContactPass::view_of_job(std::uint32_t job) const {
-  const auto [a, b] = outcomes_.job(job);
+ObjectPairView IntersectionPass::view_of_job(std::uint32_t job) const {
+  const auto [a, b] = jobs_[job];
   return a == b ? self_pair_of(objects_[a].view) : pair_of(objects_[a].view, objects_[b].view);
 }
 
-void ContactPass::run_task(std::size_t task, Worker& worker) {
-  const ContactTask& contact_task = tasks_.tasks()[task];
-  const std::uint32_t job = contact_task.job;
-  // With a limit, the tasks of a job that follow each other share a list, so that it is cut where they
-  // together find too much.
-  const bool continues =
-      limit_.is_set() && worker.last_task != no_task && tasks_.tasks()[worker.last_task].job == job;
-  const auto end_of = [](const auto& list) { return Range{static_cast<std::uint32_t>(list.size()), 0}; };
-  const Outcomes::Ranges start = continues ? outcomes_.take(worker.last_task)
-                                           : Outcomes::Ranges{{end_of(worker.found), end_of(worker.points)}};
-  worker.last_task = task;
-  const std::uint32_t first = start[of_contacts].first, first_point = start[of_points].first;
-  const auto set_outcome = [&] {
-    outcomes_.of_task(task) = {worker.number,
-                               {{{first, end_of(worker.found).first - first},
-                                 {first_point, end_of(worker.points).first - first_point}}}};
-  };
-  if (limit_.excludes(ContactLimit::place(job, 0))) return set_outcome();
+void IntersectionPass::run_task(std::size_t task, Worker& worker) {
+  const auto& [job, root] = tasks_.tasks()[task];
+  const Ranges ranges = begin_task(task, worker);
+  if (limit_.excludes(ContactLimit::place(job, 0))) return end_task(task, ranges, worker);
   const TaskInput input = input_of_job(job);
   const auto on_leaves = [&](std::span<const LeafPair> leaf_pairs) {
     if (!search_.colliding_vertices) return;
@@ -129,7 +90,8 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
     test_candidates(input, candidates, worker);
     if (!limit_.is_set()) return;
     add_crossing(input, worker.crossing_count, worker);
-    drop_excess(job, first, first_point, worker);
+    if (drop_excess(job, ranges[of_contacts].first, worker))
+      drop_points(ranges[of_contacts].first, ranges[of_points].first, worker);
   };
   const auto on_candidates = [&](std::span<const TrianglePair> candidates) {
     if (!search_.contacts) return;
@@ -137,21 +99,18 @@ void ContactPass::run_task(std::size_t task, Worker& worker) {
     test(candidates);
     worker.stats.exact_seconds += timer.lap();
   };
-  worker.traversal.find_triangle_pairs(input.pair, contact_task.root, worker.stats.traversal, on_leaves,
-                                       on_candidates);
+  worker.traversal.find_triangle_pairs(input.pair, root, worker.stats.traversal, on_leaves, on_candidates);
   Timer timer;
   if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr)
     for_neighbours(input, task, worker, test);
   add_crossing(input, worker.crossing_count, worker);
   add_normals(worker);
   worker.stats.exact_seconds += timer.lap();
-  set_outcome();
-  const std::uint32_t count = outcomes_.of_task(task).ranges[of_contacts].count;
-  limit_.add(job, count - std::min(count, start[of_contacts].count));
+  end_task(task, ranges, worker);
 }
 
-ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {
-  const auto [a, b] = outcomes_.job(job);
+IntersectionPass::TaskInput IntersectionPass::input_of_job(std::uint32_t job) const {
+  const auto [a, b] = jobs_[job];
   const ObjectPairView pair = view_of_job(job);
   return {job,
           pair,
@@ -166,15 +125,15 @@ ContactPass::TaskInput ContactPass::input_of_job(std::uint32_t job) const {
 /// Calls `test` with lists of pairs of triangles that share a vertex and may meet elsewhere. The tasks of a
 /// job share the vertices.
 template <class Test>
-void ContactPass::for_neighbours(const TaskInput& input, std::size_t task, Worker& worker,
-                                 const Test& test) const {
+void IntersectionPass::for_neighbours(const TaskInput& input, std::size_t task, Worker& worker,
+                                      const Test& test) const {
   constexpr std::size_t most_waiting = 4096;
   const std::span<const ContactTask> tasks = tasks_.tasks();
-  const auto [first_task, end_task] =
+  const auto [first_task, last_task] =
       std::equal_range(tasks.begin(), tasks.end(), tasks[task],
                        [](const ContactTask& p, const ContactTask& q) { return p.job < q.job; });
   const std::size_t count = input.object_a.vertex_count;
-  const auto parts = static_cast<std::size_t>(end_task - first_task);
+  const auto parts = static_cast<std::size_t>(last_task - first_task);
   const std::size_t part = task - static_cast<std::size_t>(first_task - tasks.begin());
   const auto corners = input.pair.a.arrays.triangles;
   worker.neighbours.clear();
@@ -199,8 +158,8 @@ void ContactPass::for_neighbours(const TaskInput& input, std::size_t task, Worke
 }
 
 /// A vector kernel decides a block of candidates at a time. The exact test decides the few that remain.
-void ContactPass::test_candidates(const TaskInput& input, std::span<const TrianglePair> candidates,
-                                  Worker& worker) const {
+void IntersectionPass::test_candidates(const TaskInput& input, std::span<const TrianglePair> candidates,
+                                       Worker& worker) const {
   const bool has_groups = !input.object_a.groups.empty() || !input.object_b.groups.empty();
   std::array<TrianglePair, pair_filter_capacity> ordered, wanted;
   for (std::size_t first = 0; first < candidates.size(); first += pair_filter_capacity) {
@@ -232,7 +191,7 @@ void ContactPass::test_candidates(const TaskInput& input, std::span<const Triang
 }
 
 /// Adds the first `count` pairs that wait in `crossing` to the contacts.
-void ContactPass::add_crossing(const TaskInput& input, std::size_t count, Worker& worker) const {
+void IntersectionPass::add_crossing(const TaskInput& input, std::size_t count, Worker& worker) const {
   const std::span<const TrianglePair> pairs = std::span(worker.crossing).first(count);
   if (search_.contact_points) worker.segments.find(input.triangles_a, input.triangles_b, pairs);
   for (std::size_t k = 0; k < count; ++k) {
@@ -242,7 +201,7 @@ void ContactPass::add_crossing(const TaskInput& input, std::size_t count, Worker
       continue;
     }
     worker.found.push_back({input.ids_a[a], input.ids_b[b], static_cast<std::uint32_t>(worker.details.size()),
-                            worker.number, IntersectionKind::segment, 2});
+                            static_cast<std::uint16_t>(worker.number), IntersectionKind::segment, 2});
     if (!search_.contact_points) continue;
     worker.details.push_back({worker.segments.normal(k), static_cast<std::uint32_t>(worker.points.size())});
     const std::array ends{worker.segments.end(0, k), worker.segments.end(1, k)};
@@ -254,14 +213,14 @@ void ContactPass::add_crossing(const TaskInput& input, std::size_t count, Worker
   worker.crossing_count -= count;
 }
 
-void ContactPass::test_candidate(const TaskInput& input, TrianglePair candidate, Worker& worker) const {
+void IntersectionPass::test_candidate(const TaskInput& input, TrianglePair candidate, Worker& worker) const {
   const TrianglePoints a = points_of(input.pair.a, candidate.a), b = points_of(input.pair.b, candidate.b);
   const TriangleIntersection shared = intersect_triangles_without_normal(a, b);
   worker.stats.exact_fallbacks += shared.used_exact_fallback ? 1 : 0;
   if (!shared.intersects) return;
   worker.found.push_back({input.ids_a[candidate.a], input.ids_b[candidate.b],
-                          static_cast<std::uint32_t>(worker.details.size()), worker.number, shared.kind,
-                          shared.point_count});
+                          static_cast<std::uint32_t>(worker.details.size()),
+                          static_cast<std::uint16_t>(worker.number), shared.kind, shared.point_count});
   if (!search_.contact_points) return;
   if (worker.unfinished.size() == IntersectingPairs::capacity) add_normals(worker);
   worker.unfinished_details[worker.unfinished.size()] = static_cast<std::uint32_t>(worker.details.size());
@@ -271,7 +230,7 @@ void ContactPass::test_candidate(const TaskInput& input, TrianglePair candidate,
   worker.points.insert(worker.points.end(), points.begin(), points.end());
 }
 
-void ContactPass::add_normals(Worker& worker) {
+void IntersectionPass::add_normals(Worker& worker) {
   if (worker.unfinished.size() == 0) return;
   std::array<Vec3d, IntersectingPairs::capacity> normals;
   separating_normals(worker.unfinished, normals.data());
@@ -280,15 +239,9 @@ void ContactPass::add_normals(Worker& worker) {
   worker.unfinished.clear();
 }
 
-/// Drops the excess contacts of one task, which begin at `first`: those that follow the first `wanted()`.
-/// Their points, from `first_point` on, go too.
-void ContactPass::drop_excess(std::uint32_t job, std::size_t first, std::size_t first_point, Worker& worker) {
-  if (!limit_.drops_at(worker.found.size() - first)) return;
-  const auto begin = worker.found.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto last = begin + static_cast<std::ptrdiff_t>(limit_.wanted() - 1);
-  std::nth_element(begin, last, worker.found.end(), in_order_of_triangles);
-  limit_.exclude_after(ContactLimit::place(job, last->triangle_a));
-  worker.found.erase(last + 1, worker.found.end());
+/// Drops the points of contacts that one task has dropped. Its contacts begin at `first`, their points at
+/// `first_point`.
+void IntersectionPass::drop_points(std::size_t first, std::size_t first_point, Worker& worker) const {
   if (!search_.contact_points) return;
   add_normals(worker);
   // Each contact of the worker has one item in `details`. In the order of these, items only move down.
@@ -297,7 +250,7 @@ void ContactPass::drop_excess(std::uint32_t job, std::size_t first, std::size_t 
             [](const FoundContact& p, const FoundContact& q) { return p.details < q.details; });
   auto next = static_cast<std::uint32_t>(first), point = static_cast<std::uint32_t>(first_point);
   for (FoundContact& found : kept) {
-    ContactDetails details = worker.details[found.details];
+    IntersectionWorker::Details details = worker.details[found.details];
     const auto points = worker.points.begin() + static_cast<std::ptrdiff_t>(details.first_point);
     std::copy_n(points, found.point_count, worker.points.begin() + static_cast<std::ptrdiff_t>(point));
     details.first_point = std::exchange(point, point + found.point_count);
@@ -308,84 +261,53 @@ void ContactPass::drop_excess(std::uint32_t job, std::size_t first, std::size_t 
   worker.points.resize(point);
 }
 
-std::size_t ContactPass::largest_buffer() const {
-  std::size_t largest = 0;
-  for (const Worker& worker : workers_) largest = std::max(largest, worker.points.capacity());
-  return largest;
+/// Known contacts name their points at new places.
+void IntersectionPass::move_known() {
+  outcomes_.move_known<of_contacts>(records_);
+  outcomes_.move_known<of_points>(points_);
+  for (std::size_t job = 0; job < outcomes_.size(); ++job) {
+    if (!outcomes_.is_known(job)) continue;
+    const auto [contacts, points] = outcomes_.ranges(job);
+    const std::uint32_t change = points.first - outcomes_.last_ranges(job)[of_points].first;
+    if (change == 0) continue;
+    for (Contact& contact : std::span(records_).subspan(contacts.first, contacts.count))
+      contact.first_point += change;
+  }
 }
 
-/// Jobs are in canonical order. Reused contacts move within the lists; new contacts are sorted and written
-/// between them.
-void ContactPass::gather_contacts(const Parallel& parallel) {
-  outcomes_.place(tasks_.tasks());
-  outcomes_.move_known<of_contacts>(contacts_);
-  outcomes_.move_known<of_points>(points_);
-  parallel.for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    for (std::size_t job = begin; job < end; ++job) {
-      if (outcomes_.is_known(job)) {
-        renumber_points(job);
-      } else {
-        gather_found(job, workers_[w]);
-      }
+void IntersectionPass::gather_found(std::size_t job, Worker& worker, const Parallel& parallel) {
+  worker.order.sort(
+      [&](const auto& visit) {
+        for_each_found(job, [&](const FoundContact& found, std::uint32_t, std::uint32_t) { visit(found); });
+      },
+      [](const FoundContact& found) {
+        return SortKey{0, found.triangle_a};
+      },
+      [](const FoundContact& p, const FoundContact& q) { return is_before(p, q); }, parallel, worker.sorted);
+  const ObjectId a = objects_[jobs_[job].a].id, b = objects_[jobs_[job].b].id;
+  const auto [contacts, points] = outcomes_.ranges(job);
+  std::uint32_t point = points.first;
+  for (std::size_t i = 0; i < worker.sorted.size(); ++i) {
+    const FoundContact& found = worker.sorted[i];
+    records_[contacts.first + i] = {
+        a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point, {}};
+    if (search_.contact_points) point += found.point_count;
+  }
+  if (!search_.contact_points) return;
+  parallel.for_ranges(worker.sorted.size(), 1024, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const FoundContact& found = worker.sorted[i];
+      Contact& contact = records_[contacts.first + i];
+      const Worker& finder = workers_[found.worker];
+      const IntersectionWorker::Details& details = finder.details[found.details];
+      contact.normal = details.normal;
+      std::copy_n(finder.points.begin() + static_cast<std::ptrdiff_t>(details.first_point), found.point_count,
+                  points_.begin() + static_cast<std::ptrdiff_t>(contact.first_point));
     }
   });
-  outcomes_.complete();
 }
 
-void ContactPass::renumber_points(std::size_t job) {
-  const std::uint32_t change =
-      outcomes_.ranges(job)[of_points].first - outcomes_.last_ranges(job)[of_points].first;
-  if (change == 0) return;
-  const Range contacts = outcomes_.ranges(job)[of_contacts];
-  for (Contact& contact : std::span(contacts_).subspan(contacts.first, contacts.count))
-    contact.first_point += change;
-}
-
-/// The contacts of a job. They are copied only when several tasks found them.
-std::span<const FoundContact> ContactPass::found_of(std::size_t job, Worker& worker) const {
-  const auto tasks = outcomes_.tasks_of(job);
-  const auto found = [&](const Outcomes::TaskOutcome& task) {
-    const Range contacts = task.ranges[of_contacts];
-    return std::span(workers_[task.worker].found).subspan(contacts.first, contacts.count);
-  };
-  if (tasks.size() == 1) return found(tasks.front());
-  worker.of_job.clear();
-  for (const Outcomes::TaskOutcome& task : tasks) {
-    const auto part = found(task);
-    worker.of_job.insert(worker.of_job.end(), part.begin(), part.end());
-  }
-  return worker.of_job;
-}
-
-void ContactPass::gather_found(std::size_t job, Worker& worker) {
-  const ObjectId a = objects_[outcomes_.job(job).a].id, b = objects_[outcomes_.job(job).b].id;
-  Contact* contact = contacts_.data() + outcomes_.ranges(job)[of_contacts].first;
-  std::uint32_t point = outcomes_.ranges(job)[of_points].first;
-  const std::span<const FoundContact> found_contacts = found_of(job, worker);
-  for (const std::uint32_t i : worker.order.sort(found_contacts)) {
-    const FoundContact& found = found_contacts[i];
-    *contact = {a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point, {}};
-    if (search_.contact_points) {
-      const Worker& finder = workers_[found.worker];
-      const ContactDetails& details = finder.details[found.details];
-      contact->normal = details.normal;
-      const ContactPoint* const found_points = finder.points.data() + details.first_point;
-      for (std::size_t k = 0; k < found.point_count; ++k) points_[point++] = found_points[k];
-    }
-    ++contact;
-  }
-}
-
-void ContactPass::truncate(std::uint64_t max_contacts) {
-  is_truncated_ = contacts_.size() > max_contacts;
-  if (!is_truncated_) return;
-  outcomes_.truncate(max_contacts);
-  const auto count = static_cast<std::size_t>(max_contacts);
-  points_.resize(contacts_[count].first_point);
-  contacts_.resize(count);
-}
-
-void ContactPass::gather_colliding_vertices() {
+void IntersectionPass::gather_colliding_vertices() {
   vertex_groups_.clear();
   vertices_.clear();
   if (!search_.colliding_vertices) return;
@@ -399,7 +321,7 @@ void ContactPass::gather_colliding_vertices() {
     const std::uint32_t job = first->job;
     const auto last =
         std::find_if(first, leaves_.end(), [&](const auto& leaves) { return leaves.job != job; });
-    const ContactJob pair = outcomes_.job(job);
+    const ContactJob pair = jobs_[job];
     CollidingVertices group{objects_[pair.a].id, objects_[pair.b].id,
                             static_cast<std::uint32_t>(vertices_.size()), 0, 0};
     append_marked_vertices(pair.a, {first, last}, false);
@@ -411,9 +333,9 @@ void ContactPass::gather_colliding_vertices() {
   }
 }
 
-void ContactPass::append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves,
-                                         bool side_b) {
-  const ContactObject& owner = objects_[object];
+void IntersectionPass::append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves,
+                                              bool side_b) {
+  const IntersectedObject& owner = objects_[object];
   marked_.assign(owner.vertex_count, 0);
   for (const CollidingLeaves& pair : leaves) {
     const std::uint32_t begin = side_b ? pair.leaves.begin_b : pair.leaves.begin_a;
