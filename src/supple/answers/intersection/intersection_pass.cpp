@@ -78,7 +78,7 @@ ObjectPairView IntersectionPass::view_of_job(std::uint32_t job) const {
 }
 
 void IntersectionPass::run_task(std::size_t task, Worker& worker) {
-  const auto& [job, root] = tasks_.tasks()[task];
+  const std::uint32_t job = tasks_.tasks()[task].job;
   const Ranges ranges = begin_task(task, worker);
   if (limit_.excludes(ContactLimit::place(job, 0))) return end_task(task, ranges, worker);
   const TaskInput input = input_of_job(job);
@@ -99,7 +99,8 @@ void IntersectionPass::run_task(std::size_t task, Worker& worker) {
     test(candidates);
     worker.stats.exact_seconds += timer.lap();
   };
-  worker.traversal.find_triangle_pairs(input.pair, root, worker.stats.traversal, on_leaves, on_candidates);
+  worker.traversal.find_triangle_pairs(input.pair, tasks_.tasks()[task].root, worker.stats.traversal,
+                                       on_leaves, on_candidates);
   Timer timer;
   if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr)
     for_neighbours(input, task, worker, test);
@@ -285,19 +286,19 @@ void IntersectionPass::gather_found(std::size_t job, Worker& worker, const Paral
       },
       [](const FoundContact& p, const FoundContact& q) { return is_before(p, q); }, parallel, worker.sorted);
   const ObjectId a = objects_[jobs_[job].a].id, b = objects_[jobs_[job].b].id;
-  const auto [contacts, points] = outcomes_.ranges(job);
-  std::uint32_t point = points.first;
+  const std::uint32_t first = outcomes_.ranges(job)[of_contacts].first;
+  std::uint32_t point = outcomes_.ranges(job)[of_points].first;
   for (std::size_t i = 0; i < worker.sorted.size(); ++i) {
     const FoundContact& found = worker.sorted[i];
-    records_[contacts.first + i] = {
-        a, b, found.triangle_a, found.triangle_b, found.kind, found.point_count, point, {}};
+    records_[first + i] = {a,     b, found.triangle_a, found.triangle_b, found.kind, found.point_count,
+                           point, {}};
     if (search_.contact_points) point += found.point_count;
   }
   if (!search_.contact_points) return;
   parallel.for_ranges(worker.sorted.size(), 1024, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const FoundContact& found = worker.sorted[i];
-      Contact& contact = records_[contacts.first + i];
+      Contact& contact = records_[first + i];
       const Worker& finder = workers_[found.worker];
       const IntersectionWorker::Details& details = finder.details[found.details];
       contact.normal = details.normal;
