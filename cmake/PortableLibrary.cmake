@@ -4,7 +4,7 @@ set(supple_root ${CMAKE_CURRENT_LIST_DIR}/..)
 file(GLOB_RECURSE supple_portable_sources CONFIGURE_DEPENDS ${supple_root}/src/supple/*.cpp
   ${supple_root}/models/src/*.cpp ${supple_root}/simulation/src/*.cpp)
 list(FILTER supple_portable_sources EXCLUDE REGEX
-  "/mesh/files/(file_access|mesh_file|obj|parse_number|off|ply|stl|text_scanner)\\.cpp$")
+  "/mesh/files/(file_access|mesh_file|obj|parse_number|off|ply|ply_header|stl|text_scanner)\\.cpp$")
 
 # Adds the folders of the library's headers, and symbolic links to the header folders LIBRARY... only: the other
 # system headers belong to this machine.

@@ -208,8 +208,8 @@ HWY_NOINLINE void load_leaf_boxes(LeafBoxes& leaf, VertexArray<Scalar> positions
 }
 
 /// Loads the boxes of the triangles [begin, end) of a leaf, at most a block.
-HWY_INLINE void load_boxes(LeafBoxes& leaf, const LeafArrays& object, std::uint32_t leaf_number,
-                           std::uint32_t begin, std::uint32_t end) {
+void LoadLeafBoxes(const LeafArrays& object, std::uint32_t leaf_number, std::uint32_t begin,
+                   std::uint32_t end, LeafBoxes& leaf) {
   const TriangleArrays& arrays = object.triangles;
   if (arrays.doubles.data != nullptr) {
     load_leaf_boxes<DoubleBox>(leaf, arrays.doubles, object, leaf_number, begin, end);
@@ -329,7 +329,7 @@ class LeafTests {
     const std::size_t place = place_of(first);
     LeafBoxes& entry = side.boxes[place];
     if (std::exchange(side.first_triangles[place], first) != first) {
-      load_boxes(entry, object, leaf_number, first, std::min(first + leaf_block, leaf_end));
+      LoadLeafBoxes(object, leaf_number, first, std::min(first + leaf_block, leaf_end), entry);
       const bool is_placed = &side == &cache_.b && !placement_.is_identity();
       if (is_placed) supple::HWY_NAMESPACE::place(entry, placement_);
     }
@@ -397,11 +397,6 @@ std::uint64_t TriangleBoxPairs(const LeafPair* leaf_pairs, std::size_t count, co
   LeafTests tests(a, b, placement, same_object, cache, pairs);
   for (std::size_t k = 0; k < count; ++k) tests.test(leaf_pairs[k]);
   return tests.box_tests();
-}
-
-void LoadLeafBoxes(const LeafArrays& object, std::uint32_t leaf, std::uint32_t begin, std::uint32_t end,
-                   LeafBoxes& boxes) {
-  load_boxes(boxes, object, leaf, begin, end);
 }
 
 }  // namespace HWY_NAMESPACE

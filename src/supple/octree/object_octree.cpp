@@ -254,6 +254,7 @@ SphereFitter ObjectOctree::sphere_fitter(const VertexBuffer& vertices,
 
 void ObjectOctree::refit_spheres(std::uint32_t node_begin, std::uint32_t node_end,
                                  const SphereFitter& fitter) {
+  // Not `refit_bottom_up`: a sphere is fitted to the vertices below, because the union of spheres is larger.
   for (std::uint32_t n = node_begin; n < node_end; ++n) {
     for (int child = 0; child < node_width; ++child)
       set_child(spheres_[n], child, fitter.sphere_of_child(n, child, child_box(boxes_[n], child)));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "geometry/vector.hpp"
+#include "octree/refit_bottom_up.hpp"
 
 namespace supple {
 namespace {
@@ -57,38 +58,36 @@ SelfCollisionCulling::SelfCollisionCulling(const ObjectOctree& octree, std::span
       node_normals_(octree.nodes().size()),
       masks_(octree.nodes().size(), 0) {
   std::vector<Edge> edges;
-  for (std::uint32_t n = static_cast<std::uint32_t>(octree.nodes().size()); n-- > 0;) {
-    const OctreeNode& node = octree.nodes()[n];
-    for (int child = 0; child < node.child_count; ++child) {
-      edges.clear();
-      if (!node.is_inner(child)) {
-        for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
-          const Triangle& triangle = triangles[t];
-          for (std::size_t corner = 0; corner < 3; ++corner) {
+  const auto set_boundary = [&](std::uint32_t n, int child) {
+    cancel_opposite(edges);
+    if (edges.size() > longest_boundary(octree.nodes()[n].size(child))) return;
+    const auto begin = static_cast<std::uint32_t>(boundary_edges_.size());
+    boundary_edges_.insert(boundary_edges_.end(), edges.begin(), edges.end());
+    boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(child)] = {
+        begin, static_cast<std::uint32_t>(boundary_edges_.size())};
+  };
+  refit_bottom_up(
+      octree.nodes().data(), 0, static_cast<std::uint32_t>(octree.nodes().size()),
+      [&](std::uint32_t n, int child) {
+        const OctreeNode& node = octree.nodes()[n];
+        edges.clear();
+        for (const Triangle& triangle : triangles.subspan(node.first_triangle[child], node.size(child))) {
+          for (std::size_t corner = 0; corner < 3; ++corner)
             edges.push_back({triangle[corner], triangle[(corner + 1) % 3]});
-          }
         }
-      } else {
+        set_boundary(n, child);
+      },
+      [&](std::uint32_t n) {
+        const OctreeNode& node = octree.nodes()[n];
+        if (node.parent == n) return;
+        const auto parts = std::span(boundaries_).subspan(std::size_t{n} * node_width, node.child_count);
         // If a part has no boundary, neither has the whole: smooth surfaces rarely have such parts.
-        const OctreeNode& below = octree.nodes()[node.child_node(child)];
-        const Boundary* const parts = &boundaries_[std::size_t{node.child_node(child)} * node_width];
-        if (std::any_of(parts, parts + below.child_count,
-                        [](const Boundary& b) { return b.begin == b.end; })) {
-          continue;
-        }
-        for (int part = 0; part < below.child_count; ++part) {
-          edges.insert(edges.end(), boundary_edges_.begin() + parts[part].begin,
-                       boundary_edges_.begin() + parts[part].end);
-        }
-      }
-      cancel_opposite(edges);
-      if (edges.size() > longest_boundary(node.size(child))) continue;
-      const auto begin = static_cast<std::uint32_t>(boundary_edges_.size());
-      boundary_edges_.insert(boundary_edges_.end(), edges.begin(), edges.end());
-      boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(child)] = {
-          begin, static_cast<std::uint32_t>(boundary_edges_.size())};
-    }
-  }
+        if (std::ranges::any_of(parts, [](const Boundary& b) { return b.begin == b.end; })) return;
+        edges.clear();
+        for (const Boundary& part : parts)
+          edges.insert(edges.end(), boundary_edges_.begin() + part.begin, boundary_edges_.begin() + part.end);
+        set_boundary(node.parent, node.index_in_parent);
+      });
   boundary_edges_.shrink_to_fit();
 }
 
@@ -96,44 +95,51 @@ void SelfCollisionCulling::refit(const ObjectOctree& octree, std::span<const Tri
                                  const VertexBuffer& start, const VertexBuffer& end,
                                  const Parallel& parallel) {
   octree.for_nodes_bottom_up(parallel, 64, [&](std::uint32_t node_begin, std::uint32_t node_end) {
-    for (std::uint32_t n = node_begin; n < node_end; ++n) {
-      if (start.is_double()) {
-        refit_node(octree.nodes(), triangles, start.doubles(), end.doubles(), n);
-      } else {
-        refit_node(octree.nodes(), triangles, start.floats(), end.floats(), n);
-      }
+    if (start.is_double()) {
+      refit_nodes(octree.nodes(), triangles, start.doubles(), end.doubles(), node_begin, node_end);
+    } else {
+      refit_nodes(octree.nodes(), triangles, start.floats(), end.floats(), node_begin, node_end);
     }
   });
 }
 
 template <class Scalar>
-void SelfCollisionCulling::refit_node(std::span<const OctreeNode> nodes, std::span<const Triangle> triangles,
-                                      const VertexArray<Scalar>& start, const VertexArray<Scalar>& end,
-                                      std::uint32_t n) {
-  const OctreeNode& node = nodes[n];
-  Normals all;
-  std::uint32_t mask = 0;
-  for (int child = 0; child < node.child_count; ++child) {
-    const Normals normals =
-        !node.is_inner(child)
-            ? normals_of(triangles.subspan(node.first_triangle[child], node.size(child)), start, end)
-            : node_normals_[node.child_node(child)];
-    double least = 0, size = 0;
-    const Vec3d direction = normals.sum * (1 / largest_magnitude(normals.sum));
-    for (int axis = 0; axis < 3; ++axis) {
-      all.sum[axis] += normals.sum[axis];
-      all.low[axis] = std::min(all.low[axis], normals.low[axis]);
-      all.high[axis] = std::max(all.high[axis], normals.high[axis]);
-      least += std::min(direction[axis] * normals.low[axis], direction[axis] * normals.high[axis]);
-      size += std::abs(direction[axis]);
-    }
-    // The error of the bounds is at most 2^-21 (`normals_of`), that of this sum far less. False for NaN.
-    const bool all_face = least > size * 0x1p-20;
-    const Boundary& boundary = boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(child)];
-    if (all_face && goes_round_once(boundary, direction, start, end)) mask |= 1u << child;
-  }
-  node_normals_[n] = all;
-  masks_[n] = static_cast<std::uint8_t>(mask);
+void SelfCollisionCulling::refit_nodes(std::span<const OctreeNode> nodes, std::span<const Triangle> triangles,
+                                       const VertexArray<Scalar>& start, const VertexArray<Scalar>& end,
+                                       std::uint32_t node_begin, std::uint32_t node_end) {
+  Normals of_leaves[node_width];
+  refit_bottom_up(
+      nodes.data(), node_begin, node_end,
+      [&](std::uint32_t n, int child) {
+        const auto part = triangles.subspan(nodes[n].first_triangle[child], nodes[n].size(child));
+        of_leaves[child] = normals_of(part, start, end);
+      },
+      [&](std::uint32_t n) {
+        const OctreeNode& node = nodes[n];
+        Normals all;
+        std::uint32_t mask = 0;
+        for (int child = 0; child < node.child_count; ++child) {
+          const Normals& normals =
+              node.is_inner(child) ? node_normals_[node.child_node(child)] : of_leaves[child];
+          double least = 0, size = 0;
+          const Vec3d direction = normals.sum * (1 / largest_magnitude(normals.sum));
+          for (int axis = 0; axis < 3; ++axis) {
+            all.sum[axis] += normals.sum[axis];
+            all.low[axis] = std::min(all.low[axis], normals.low[axis]);
+            all.high[axis] = std::max(all.high[axis], normals.high[axis]);
+            least += std::min(direction[axis] * normals.low[axis], direction[axis] * normals.high[axis]);
+            size += std::abs(direction[axis]);
+          }
+          // False for NaN. The error of the bounds is at most 2^-21 (`normals_of`), that of this sum far
+          // less.
+          const bool all_face = least > size * 0x1p-20;
+          const Boundary& boundary =
+              boundaries_[std::size_t{n} * node_width + static_cast<std::size_t>(child)];
+          if (all_face && goes_round_once(boundary, direction, start, end)) mask |= 1u << child;
+        }
+        node_normals_[n] = all;
+        masks_[n] = static_cast<std::uint8_t>(mask);
+      });
 }
 
 /// Uses the three Bernstein coefficients of each triangle's normal, scaled. Let E and F be the largest

@@ -72,8 +72,9 @@ class SelfCollisionCulling {
   };
 
   template <class Scalar>
-  void refit_node(std::span<const OctreeNode> nodes, std::span<const Triangle> triangles,
-                  const VertexArray<Scalar>& start, const VertexArray<Scalar>& end, std::uint32_t n);
+  void refit_nodes(std::span<const OctreeNode> nodes, std::span<const Triangle> triangles,
+                   const VertexArray<Scalar>& start, const VertexArray<Scalar>& end, std::uint32_t node_begin,
+                   std::uint32_t node_end);
   template <class Scalar>
   static Normals normals_of(std::span<const Triangle> triangles, const VertexArray<Scalar>& start,
                             const VertexArray<Scalar>& end);

@@ -9,9 +9,9 @@
 #include "contact/distance/element_distance.hpp"
 #include "contact/distance/ray_triangle.hpp"
 #include "core/float_rounding.hpp"
-#include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/query_kernels.hpp"
+#include "queries/box_faces.hpp"
 #include "queries/nearest_triangle.hpp"
 #include "queries/ray_line.hpp"
 #include "queries/support_plane.hpp"
@@ -21,17 +21,6 @@ namespace supple {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-QueryBox box_of(const TrianglePoints& corners) {
-  QueryBox box{corners[0], corners[0]};
-  for (const Vec3d& corner : corners) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.min[axis] = std::min(box.min[axis], corner[axis]);
-      box.max[axis] = std::max(box.max[axis], corner[axis]);
-    }
-  }
-  return box;
-}
 
 /// At most the distance of a point and a box.
 template <class Box>
@@ -138,43 +127,6 @@ RayHit hit_of(ObjectId object, const Ray& ray, const TriangleOnRay& found, std::
   }
   return hit;
 }
-
-/// A box, exactly: its points, and the twelve triangles of its faces.
-class BoxFaces {
- public:
-  explicit BoxFaces(const QueryBox& box) : box_(box) {
-    std::array<Vec3d, 8> corners;
-    for (std::uint32_t i = 0; i < 8; ++i)
-      corners[i] = {(i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
-                    (i & 4) != 0 ? box.max.z : box.min.z};
-    constexpr std::uint8_t faces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                          {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
-    for (std::size_t f = 0; f < 6; ++f) {
-      const auto& [a, b, c, d] = faces[f];
-      triangles_[2 * f] = {corners[a], corners[b], corners[c]};
-      triangles_[2 * f + 1] = {corners[a], corners[c], corners[d]};
-    }
-  }
-
-  /// Whether the triangle shares a point with the box: a corner inside, or a point on a face.
-  bool meet(const TrianglePoints& triangle) const {
-    const QueryBox around = box_of(triangle);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (around.min[axis] > box_.max[axis] || around.max[axis] < box_.min[axis]) return false;
-    }
-    const auto has = [&](const Vec3d& p) {
-      return box_.min.x <= p.x && p.x <= box_.max.x && box_.min.y <= p.y && p.y <= box_.max.y &&
-             box_.min.z <= p.z && p.z <= box_.max.z;
-    };
-    return std::any_of(triangle.begin(), triangle.end(), has) ||
-           std::any_of(triangles_.begin(), triangles_.end(),
-                       [&](const TrianglePoints& face) { return triangles_intersect(face, triangle); });
-  }
-
- private:
-  QueryBox box_;
-  std::array<TrianglePoints, 12> triangles_;
-};
 
 }  // namespace
 
@@ -397,12 +349,6 @@ template <class Visit>
 void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& object,
                                       const QueryBox& region, const Visit& visit) {
   const Aabb box{seen_by(object, region.min).low, seen_by(object, region.max).high};
-  const auto are_apart = [&](const QueryBox& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (other.min[axis] > region.max[axis] || other.max[axis] < region.min[axis]) return true;
-    }
-    return false;
-  };
   const auto chosen = [&](const LeafBoxes& boxes) { return overlapping_triangles(box, boxes); };
   nodes_.clear();
   if (!object.view.nodes.empty()) nodes_.push_back(0);
@@ -414,7 +360,7 @@ void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& 
     for (std::uint32_t left = overlapping_children(box, object.view.boxes[number]) & children; left != 0;
          left &= left - 1) {
       const int child = std::countr_zero(left);
-      if (object.fine_boxes != nullptr && are_apart(object.child_box(number, child))) continue;
+      if (object.fine_boxes != nullptr && are_apart(object.child_box(number, child), region)) continue;
       if (node.is_inner(child)) {
         nodes_.push_back(node.child_node(child));
       } else {

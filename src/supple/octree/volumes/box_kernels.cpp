@@ -69,6 +69,7 @@ HWY_INLINE Box refit_bottom_node(const OctreeNode& node, ChildBoxes& children, V
   return all;
 }
 
+/// Does not use `refit_bottom_up`: taking the leaves of bottom nodes four at a time is a tenth faster.
 template <class Box, class Scalar>
 bool refit_nodes(const OctreeNode* nodes, ChildBoxes* boxes, VertexArray<Scalar> positions,
                  const TriangleArrays& arrays, const LeafVertexArrays& leaves, std::uint32_t begin,
@@ -91,10 +92,7 @@ bool refit_nodes(const OctreeNode* nodes, ChildBoxes* boxes, VertexArray<Scalar>
       all_finite = box.all_finite() && all_finite;
       set_child(children, child, box);
     }
-    invert_children_from(children, node.child_count);
-    if (node.parent == n) continue;
-    const Aabb box = enclose_children(children);
-    set_child(boxes[node.parent], node.index_in_parent, &box.min.x, &box.max.x);
+    unite_children(nodes, boxes, n);
   }
   return all_finite || arrays.inert != nullptr;
 }

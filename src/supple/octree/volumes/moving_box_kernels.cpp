@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "octree/refit_bottom_up.hpp"
 #include "octree/volumes/triangle_boxes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -49,20 +50,13 @@ HWY_INLINE FloatBox box_of_faces(const VertexCorners& corners, const Triangle* f
 void RefitMovingBoxes(const OctreeNode* nodes, ChildBoxes* boxes, const VertexCorners& corners,
                       const Triangle* faces, const std::uint8_t* inert, std::uint32_t begin,
                       std::uint32_t end) {
-  for (std::uint32_t n = begin; n < end; ++n) {
-    const OctreeNode& node = nodes[n];
-    ChildBoxes& children = boxes[n];
-    for (int child = 0; child < node.child_count; ++child) {
-      if (node.is_inner(child)) continue;
-      set_child(
-          children, child,
-          box_of_faces(corners, faces, inert, node.first_triangle[child], node.first_triangle[child + 1]));
-    }
-    invert_children_from(children, node.child_count);
-    if (node.parent == n) continue;
-    const Aabb box = enclose_children(children);
-    set_child(boxes[node.parent], node.index_in_parent, &box.min.x, &box.max.x);
-  }
+  refit_bottom_up(
+      nodes, begin, end,
+      [&](std::uint32_t n, int child) HWY_ATTR {
+        const std::uint32_t* const first = nodes[n].first_triangle + child;
+        set_child(boxes[n], child, box_of_faces(corners, faces, inert, first[0], first[1]));
+      },
+      [&](std::uint32_t n) HWY_ATTR { unite_children(nodes, boxes, n); });
 }
 
 }  // namespace HWY_NAMESPACE

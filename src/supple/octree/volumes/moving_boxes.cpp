@@ -8,6 +8,7 @@
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
+#include "octree/refit_bottom_up.hpp"
 #include "octree/volumes/box_kernels.hpp"
 
 namespace supple {
@@ -107,30 +108,29 @@ std::size_t MovingBoxes::bytes() const {
 
 namespace {
 
-/// Checks the boxes of all children at one end of the step, from the last node up.
+/// Checks the boxes of all children at one end of the step.
 std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elements, const ChildBoxes* boxes,
                          const VertexBuffer& positions, std::span<const std::uint8_t> inert) {
   constexpr float greatest = std::numeric_limits<float>::max();
   const auto nodes = octree.nodes();
-  std::vector<Aabb> node_boxes(nodes.size());
-  for (std::size_t n = nodes.size(); n-- > 0;) {
-    for (int child = 0; child < node_width; ++child) {
-      Aabb bounds;
-      if (child < nodes[n].child_count && nodes[n].is_inner(child)) {
-        bounds = node_boxes[nodes[n].child_node(child)];
-      } else if (child < nodes[n].child_count) {
-        for (std::uint32_t f = nodes[n].first_triangle[child]; f < nodes[n].first_triangle[child + 1]; ++f) {
-          for (const std::uint32_t vertex : elements.faces()[f]) {
-            if (inert[vertex] == 0) extend(bounds, positions[vertex]);
-          }
-        }
-        for (int axis = 0; axis < 3 && !bounds.empty(); ++axis) {
-          bounds.min[axis] = std::max(bounds.min[axis], -greatest);
-          bounds.max[axis] = std::min(bounds.max[axis], greatest);
-        }
+  std::vector<ChildBoxes> expected(nodes.size());
+  refit_child_boxes(nodes, expected.data(), [&](const OctreeNode& node, int child) {
+    Aabb box;
+    for (const Triangle& face : elements.faces().subspan(node.first_triangle[child], node.size(child))) {
+      for (const std::uint32_t vertex : face) {
+        if (inert[vertex] == 0) extend(box, positions[vertex]);
       }
-      if (child_box(boxes[n], child) != bounds) return "the box of a child is not that of its vertices";
-      extend(node_boxes[n], bounds);
+    }
+    for (int axis = 0; axis < 3 && !box.empty(); ++axis) {
+      box.min[axis] = std::max(box.min[axis], -greatest);
+      box.max[axis] = std::min(box.max[axis], greatest);
+    }
+    return box;
+  });
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    for (int child = 0; child < node_width; ++child) {
+      if (child_box(boxes[n], child) != child_box(expected[n], child))
+        return "the box of a child is not that of its vertices";
     }
   }
   return "";

@@ -1,10 +1,12 @@
 #include "octree/volumes/node_volumes.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "core/float_rounding.hpp"
 #include "geometry/vector.hpp"
 #include "octree/object_octree.hpp"
+#include "octree/refit_bottom_up.hpp"
 
 namespace supple {
 namespace {
@@ -82,20 +84,29 @@ void NodeVolumes::refit(std::span<const OctreeNode> nodes, const ChildBoxes* box
                 arrays_of(surface.triangles, surface.vertices, surface.inert), leaves, begin, end);
   }
   if (oriented_boxes_.empty()) return;
-  for (std::uint32_t n = begin; n < end; ++n) {
-    const OctreeNode& node = nodes[n];
-    moments_[n] = {};
-    for (int child = 0; child < node.child_count; ++child) {
-      const SurfacePart part = surface.part(node.first_triangle[child], node.size(child));
-      const SurfaceMoments moments =
-          node.is_inner(child) ? moments_[node.child_node(child)] : moments_of(part);
-      moments_[n] += moments;
-      const OrientedBoxFit fit(moments, child_box(boxes[n], child));
-      AxisExtents extents;
-      if (fit.needs_extents()) extend_by_child(fit.frame(), nodes, n, child, part, leaves, extents);
-      set_child(oriented_boxes_[n], child, fit.box(extents));
-    }
-  }
+  const auto part_of = [&](std::uint32_t n, int child) {
+    return surface.part(nodes[n].first_triangle[child], nodes[n].size(child));
+  };
+  std::array<SurfaceMoments, node_width> of_leaves;
+  refit_bottom_up(
+      nodes.data(), begin, end,
+      [&](std::uint32_t n, int child) {
+        of_leaves[static_cast<std::size_t>(child)] = moments_of(part_of(n, child));
+      },
+      [&](std::uint32_t n) {
+        const OctreeNode& node = nodes[n];
+        moments_[n] = {};
+        for (int child = 0; child < node.child_count; ++child) {
+          const SurfaceMoments& moments = node.is_inner(child) ? moments_[node.child_node(child)]
+                                                               : of_leaves[static_cast<std::size_t>(child)];
+          moments_[n] += moments;
+          const OrientedBoxFit fit(moments, child_box(boxes[n], child));
+          AxisExtents extents;
+          if (fit.needs_extents())
+            extend_by_child(fit.frame(), nodes, n, child, part_of(n, child), leaves, extents);
+          set_child(oriented_boxes_[n], child, fit.box(extents));
+        }
+      });
 }
 
 void NodeVolumes::refit_object(std::span<const OctreeNode> nodes, const ChildBoxes* boxes,

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "octree/refit_bottom_up.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace supple {
 namespace HWY_NAMESPACE {
@@ -110,18 +112,19 @@ void refit_nodes(const OctreeNode* nodes, const ChildBoxes* boxes, float* slabs,
                  std::uint32_t end) {
   const DirectionLanes lanes = lanes_of(directions);
   const std::size_t stride = floats_per_slab * directions.size();
-  for (std::uint32_t n = begin; n < end; ++n) {
-    const OctreeNode& node = nodes[n];
-    const std::uint32_t* const first = leaves.first + std::size_t{n} * node_width;
-    float* const own = slabs + n * stride;
-    for (int child = 0; child < node.child_count; ++child) {
-      if (node.is_inner(child)) continue;
-      refit_leaf<V>(node, child, child_box(boxes[n], child), own, lanes, directions.size(), positions, arrays,
-                    first, leaves.vertices);
-    }
-    if (node.parent == n) continue;
-    unite_slabs(own, node.child_count, directions.size(), slabs + node.parent * stride, node.index_in_parent);
-  }
+  refit_bottom_up(
+      nodes, begin, end,
+      [&](std::uint32_t n, int child) HWY_ATTR {
+        refit_leaf<V>(nodes[n], child, child_box(boxes[n], child), slabs + n * stride, lanes,
+                      directions.size(), positions, arrays, leaves.first + std::size_t{n} * node_width,
+                      leaves.vertices);
+      },
+      [&](std::uint32_t n) HWY_ATTR {
+        const OctreeNode& node = nodes[n];
+        if (node.parent == n) return;
+        unite_slabs(slabs + n * stride, node.child_count, directions.size(), slabs + node.parent * stride,
+                    node.index_in_parent);
+      });
 }
 
 template <class Scalar>

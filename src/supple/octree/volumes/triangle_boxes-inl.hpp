@@ -295,6 +295,15 @@ HWY_INLINE Aabb enclose_children(const ChildBoxes& children) {
           {max_of_eight(children.max_x), max_of_eight(children.max_y), max_of_eight(children.max_z)}};
 }
 
+/// Inverts the boxes of missing children and writes the box of all children into the parent.
+HWY_INLINE void unite_children(const OctreeNode* nodes, ChildBoxes* boxes, std::uint32_t n) {
+  const OctreeNode& node = nodes[n];
+  invert_children_from(boxes[n], node.child_count);
+  if (node.parent == n) return;
+  const Aabb box = enclose_children(boxes[n]);
+  set_child(boxes[node.parent], node.index_in_parent, &box.min.x, &box.max.x);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace supple
 HWY_AFTER_NAMESPACE();

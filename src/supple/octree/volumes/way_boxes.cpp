@@ -6,18 +6,10 @@
 #include "core/float_rounding.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
+#include "octree/refit_bottom_up.hpp"
 
 namespace supple {
 namespace {
-
-void set_child_box(ChildBoxes& boxes, int child, const Aabb& box) {
-  boxes.min_x[child] = box.min.x;
-  boxes.min_y[child] = box.min.y;
-  boxes.min_z[child] = box.min.z;
-  boxes.max_x[child] = box.max.x;
-  boxes.max_y[child] = box.max.y;
-  boxes.max_z[child] = box.max.z;
-}
 
 /// The difference is rounded, too.
 Aabb box_of_way(const Vec3d& way) {
@@ -34,25 +26,17 @@ Aabb box_of_way(const Vec3d& way) {
 
 void set_way_boxes(const ObjectOctree& octree, const SurfaceElements& elements, const VertexBuffer& start,
                    const VertexBuffer& end, std::vector<ChildBoxes>& ways) {
-  const std::span<const OctreeNode> nodes = octree.nodes();
-  ways.resize(nodes.size());
-  for (std::size_t n = nodes.size(); n-- > 0;) {
-    const OctreeNode& node = nodes[n];
-    for (int child = 0; child < node_width; ++child) {
-      Aabb box;
-      if (child < node.child_count && node.is_inner(child)) {
-        box = enclosing_box(ways[node.child_node(child)]);
-      } else if (child < node.child_count) {
-        for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
-          for (const std::uint32_t vertex : elements.faces()[t]) {
-            const Vec3d from = start[vertex], to = end[vertex];
-            if (is_finite(from) && is_finite(to)) extend(box, box_of_way(to - from));
-          }
-        }
+  ways.resize(octree.nodes().size());
+  refit_child_boxes(octree.nodes(), ways.data(), [&](const OctreeNode& node, int child) {
+    Aabb box;
+    for (const Triangle& face : elements.faces().subspan(node.first_triangle[child], node.size(child))) {
+      for (const std::uint32_t vertex : face) {
+        const Vec3d from = start[vertex], to = end[vertex];
+        if (is_finite(from) && is_finite(to)) extend(box, box_of_way(to - from));
       }
-      set_child_box(ways[n], child, box);
     }
-  }
+    return box;
+  });
 }
 
 }  // namespace supple

@@ -17,7 +17,9 @@
 namespace supple {
 
 /// Finds the nearest features of two objects by descending both octrees at once, nearest pairs of children
-/// first. Holds the memory of one worker.
+/// first. Holds the memory of one worker. Does not use the traversal of `narrow_phase`, which visits pairs in
+/// any order: each distance that this search finds discards pairs on its stack, so the order decides its
+/// cost.
 class NearestPairSearch {
  public:
   /// Whether any two triangles of the objects intersect.

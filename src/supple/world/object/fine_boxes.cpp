@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+
+#include "octree/refit_bottom_up.hpp"
 
 namespace supple {
 
@@ -30,25 +33,26 @@ void FineBoxes::update(const OctreeView& view, const VertexBuffer& positions, st
       box.max[axis] = std::max(box.max[axis], high[axis]);
     }
   };
-  // Children have larger numbers than their parents.
-  for (std::size_t number = view.nodes.size(); number-- > 0;) {
-    const OctreeNode& node = view.nodes[number];
-    for (int child = 0; child < node.child_count; ++child) {
-      QueryBox& box = boxes_[node_width * number + static_cast<std::size_t>(child)];
-      if (node.is_inner(child)) {
-        const std::size_t first = node_width * std::size_t{node.child_node(child)};
-        for (std::size_t i = first; i < first + node_width; ++i) include(box, boxes_[i].min, boxes_[i].max);
-        continue;
-      }
-      for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
-        if (view.arrays.inert != nullptr && view.arrays.inert[t] != 0) continue;
-        for (const std::uint32_t vertex : view.arrays.triangles[t]) {
-          const Vec3d p = positions[vertex];
-          include(box, p, p);
+  refit_bottom_up(
+      view.nodes.data(), 0, static_cast<std::uint32_t>(view.nodes.size()),
+      [&](std::uint32_t n, int child) {
+        const OctreeNode& node = view.nodes[n];
+        QueryBox& box = boxes_[node_width * std::size_t{n} + static_cast<std::size_t>(child)];
+        for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
+          if (view.arrays.inert != nullptr && view.arrays.inert[t] != 0) continue;
+          for (const std::uint32_t vertex : view.arrays.triangles[t]) {
+            const Vec3d p = positions[vertex];
+            include(box, p, p);
+          }
         }
-      }
-    }
-  }
+      },
+      [&](std::uint32_t n) {
+        const OctreeNode& node = view.nodes[n];
+        if (node.parent == n) return;
+        QueryBox& box = boxes_[node_width * std::size_t{node.parent} + node.index_in_parent];
+        for (const QueryBox& child : std::span(boxes_).subspan(node_width * std::size_t{n}, node_width))
+          include(box, child.min, child.max);
+      });
   version_ = version;
 }
 
