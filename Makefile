@@ -1,6 +1,10 @@
 # Short commands for common tasks. CMakePresets.json contains the settings of the builds.
 JOBS ?= $(shell nproc)
 
+# VIEWER=OFF builds without the viewer, which needs npm and a compiler for WebAssembly.
+VIEWER ?= ON
+configure_release = cmake --preset release -DSUPPLE_BUILD_VIEWER=$(VIEWER)
+
 BASE ?= HEAD
 
 SECONDS ?= 30
@@ -9,7 +13,8 @@ SECONDS ?= 30
 
 help:
 	@echo 'make demo     build the program, drop a cloth over a ball, collide nine objects, write a page that shows them'
-	@echo 'make test     build, then every test but two of installed libraries'
+	@echo 'make program  only the program; with VIEWER=OFF without the viewer, so without npm and WebAssembly'
+	@echo 'make test     build, then every test but long ones, which .ci/run all runs'
 	@echo 'make build    the release build: build/release/bin/supple'
 	@echo 'make fuzz     every fuzz target with sanitizers, for SECONDS=30 each'
 	@echo 'make coverage which lines and branches the tests and the corpora of the fuzz targets reach'
@@ -27,28 +32,30 @@ demo: program
 	@echo
 	build/release/bin/supple simulate scenes/nine.toml --frames 200
 	@echo
+ifneq ($(VIEWER),OFF)
 	build/release/bin/supple view scenes/nine.toml --export build/nine.html
 	@echo
 	@echo 'Open build/nine.html in a browser: it is one file, needs no server, and shows the nine objects collide.'
-	@echo 'ParaView opens build/cloth.xdmf.'
 	@echo 'Try next: build/release/bin/supple view scenes/cloth_over_ball.toml'
-	@echo '          build/release/bin/supple detect scenes/nine.toml --frames 3 --verify --json -'
+endif
+	@echo 'ParaView opens build/cloth.xdmf.'
+	@echo 'Try next: build/release/bin/supple detect scenes/nine.toml --frames 3 --verify --json -'
 
-# The command line and its viewer, without tests and examples.
+# The command line and its viewer, without tests and examples. `make program VIEWER=OFF` leaves out the viewer.
 program: dependencies
-	cmake --preset release
+	$(configure_release)
 	cmake --build --preset release -j $(JOBS) --target supple_cli
 
 # The program of the paper's experiments. The generated documents have its options, too.
 experiment: program
 	cmake --build --preset release -j $(JOBS) --target supple_experiment
 
-# Without the tests that compile the library again.
+# Without the tests that compile the library again and those that take long.
 test: build
-	ctest --preset release --label-exclude compiles
+	ctest --preset release --label-exclude 'compiles|long'
 
 build: dependencies
-	cmake --preset release
+	$(configure_release)
 	cmake --build --preset release -j $(JOBS)
 
 # FUZZ contains options of the script: make fuzz SECONDS=600 FUZZ="obj scene --keep --record"
@@ -115,4 +122,4 @@ clean:
 	rm -rf build
 
 dependencies:
-	tools/install_dependencies.sh
+	tools/install_dependencies.sh $(if $(filter OFF,$(VIEWER)),--without-viewer)

@@ -32,8 +32,9 @@ namespace {
 void check_build() {
   if (viewer::embedded_page().empty())
     throw Error(
-        "this supple was built without the viewer; configure the build with -DSUPPLE_BUILD_VIEWER=ON, which "
-        "needs npm and clang-19's WebAssembly (tools/install_dependencies.sh gets them on Debian 12)");
+        "this supple was built without the viewer; run make program, or configure the build with "
+        "-DSUPPLE_BUILD_VIEWER=ON, which needs npm and clang-19's WebAssembly (tools/install_dependencies.sh "
+        "installs them on Debian 12)");
 }
 
 /// Whether a mesh of the command line plays an animation.

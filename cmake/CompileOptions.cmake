@@ -68,12 +68,14 @@ if(SUPPLE_COVERAGE)
   endif()
 endif()
 
+cmake_path(SET supple_core_header NORMALIZE ${CMAKE_CURRENT_LIST_DIR}/../include/supple/supple.hpp)
 # Compiles the headers that most sources of a target include once instead of once for each source. A compiler
 # cache does not store the results of such compilations, so builds with a cache do not use it. The debug preset
 # does not use it either, which finds sources that miss an include.
 function(supple_precompile_headers target)
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits>
-      <map> <memory> <optional> <span> <string> <utility> <vector> ${ARGN})
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <atomic> <bit> <cmath> <cstdint> <filesystem>
+      <functional> <limits> <map> <memory> <optional> <set> <span> <sstream> <string> <tuple> <utility> <variant>
+      <vector> ${supple_core_header} ${ARGN})
   endif()
 endfunction()

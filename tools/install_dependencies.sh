@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages for a build, the tests and the demo. --ci adds the packages of the checks,
 # clang and the sanitizers; --bench adds the libraries that benchmarks compare with; --coverage adds what
-# tools/coverage.py needs; --determinism adds the compilers and emulators of tools/check_determinism.py.
+# tools/coverage.py needs; --determinism adds the compilers and emulators of tools/check_determinism.py;
+# --without-viewer leaves out npm and the compiler for WebAssembly.
 # Returns quickly when everything is installed.
 set -euo pipefail
 
@@ -13,13 +14,12 @@ packages=(
   libhdf5-dev
   libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev
   python3-matplotlib  # draws the plots of experiments and benchmarks
-  # The viewer, which also needs npm:
-  clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32
   libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev
 )
-# Node.js from another source has its own npm, which conflicts with Debian's.
-if ! command -v npm >/dev/null; then
-  packages+=(nodejs npm)
+if [ "${1:-}" != "--without-viewer" ]; then
+  packages+=(clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32)
+  # Node.js from another source has its own npm, which conflicts with Debian's.
+  command -v npm >/dev/null || packages+=(nodejs npm)
 fi
 if [ "${1:-}" = "--ci" ]; then
   packages+=(git libclang-rt-19-dev clang-format python3-clang-19 python3-h5py chromium)

@@ -156,7 +156,7 @@ class Experiment(ProgramTest):
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
 
     @unittest.skipUnless(
-        HAS_MATPLOTLIB and os.environ.get("SUPPLE_QUICK_EXPERIMENTS") == "1", "takes long unless optimised"
+        HAS_MATPLOTLIB and os.environ.get("SUPPLE_LONG_TESTS"), "takes long; the test cli.experiment_quick runs it"
     )
     def test_quick_versions(self):
         for name, plots, table in (("scaling", 5, "scaling_vertices"), ("arity", 3, "arity_objects"),

@@ -22,7 +22,7 @@ class Paper(ProgramTest):
             self.assertEqual(len(row), 4, row)
             self.assertTrue(row[2].startswith("`supple ") or row[1] in ("not built", "not used"), row)
 
-    @unittest.skipUnless(os.environ.get("SUPPLE_QUICK_EXPERIMENTS"), "runs experiments, which need an optimised build")
+    @unittest.skipUnless(os.environ.get("SUPPLE_LONG_TESTS"), "runs experiments; the test cli.paper_commands runs it")
     def test_each_command_runs(self):
         os.symlink(ROOT / "scenes", self.folder / "scenes")
         commands = dict.fromkeys(row[2].strip("`") for row in rows() if row[2])

@@ -34,6 +34,7 @@ DATA = pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data"))
 RECORD = os.environ.get("SUPPLE_RECORD_MOTION", str(ROOT / "build/release/bin/record_motion"))
 PAGE = (ROOT / "docs/recording.md").read_text()
 with_h5py = unittest.skipUnless(h5py, "needs h5py")
+takes_long = unittest.skipUnless(os.environ.get("SUPPLE_LONG_TESTS"), "takes long; the test cli.recording_stopped runs it")
 
 
 def datasets(file):
@@ -238,6 +239,7 @@ class Stopped(RecordingTest):
         self.assertEqual(self.assert_first_frames(self.folder / "stopped.h5", whole, frames), frames)
 
     @with_h5py
+    @takes_long
     def test_at_each_write(self):
         self.check_each_state(3, least=300)
 
@@ -247,6 +249,7 @@ class Stopped(RecordingTest):
         self.check_each_state(65, "--contacts", "none", from_frame=60, least=100)
 
     @with_h5py
+    @takes_long
     def test_when_columns_get_another_chunk(self):
         """Chunks have 1024 frames."""
         self.check_each_state(1025, "--contacts", "none", from_frame=1020, least=100)
