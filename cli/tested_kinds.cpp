@@ -15,10 +15,10 @@ struct NamedKind {
   ContactKinds kind;
   const char* name;
 };
-constexpr std::array<NamedKind, 4> kinds{{{ContactKinds::intersection, "intersections"},
-                                          {ContactKinds::continuous, "continuous contacts"},
-                                          {ContactKinds::proximity, "proximity"},
-                                          {ContactKinds::penetration, "penetration"}}};
+constexpr NamedKind kinds[] = {{ContactKinds::intersection, "intersections"},
+                               {ContactKinds::continuous, "continuous contacts"},
+                               {ContactKinds::proximity, "proximity"},
+                               {ContactKinds::penetration, "penetration"}};
 
 bool reads_lines(ContactKinds kind) {
   return kind == ContactKinds::continuous || kind == ContactKinds::proximity;
@@ -28,14 +28,13 @@ bool reads_lines(ContactKinds kind) {
 
 void TestedKinds::add(const Frame& frame) {
   ++frames_;
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
-    const auto untested =
-        std::find_if(frame.result.untested.begin(), frame.result.untested.end(),
-                     [&](const UntestedKind& entry) { return entry.kind == kinds[i].kind; });
-    if (untested != frame.result.untested.end())
-      reasons_[i] = untested->reason;
-    else if (contains(requested_, kinds[i].kind))
-      tested_ |= kinds[i].kind;
+  ContactKinds untested = ContactKinds::none;
+  for (const UntestedKind& entry : frame.result.untested) {
+    untested |= entry.kind;
+    reasons_[entry.kind] = entry.reason;
+  }
+  for (const auto& [kind, name] : kinds) {
+    if (contains(requested_, kind) && !contains(untested, kind)) tested_ |= kind;
   }
   if (frame.turned.empty()) return;
   ++steps_with_turns_;
@@ -47,19 +46,18 @@ void TestedKinds::add(const Frame& frame) {
 std::vector<std::string> TestedKinds::faults() const {
   std::vector<std::pair<std::string, std::string>> reasons;  // names of kinds, and why they were not tested
   bool is_nothing_tested = true;
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
-    if (!contains(requested_, kinds[i].kind)) continue;
-    if (was_tested(kinds[i].kind)) {
+  for (const auto& [kind, name] : kinds) {
+    if (!contains(requested_, kind)) continue;
+    if (was_tested(kind)) {
       is_nothing_tested = false;
       continue;
     }
     const std::string reason =
-        frames_ == 0 ? "the run ended before its first result"
-                     : reason_in_words(kinds[i].kind, reasons_[i].value_or(NothingToTest::no_objects));
+        frames_ == 0 ? "the run ended before its first result" : reason_in_words(kind, reasons_.at(kind));
     if (!reasons.empty() && reasons.back().second == reason)
-      reasons.back().first += std::string(" and ") + kinds[i].name;
+      reasons.back().first += std::string(" and ") + name;
     else
-      reasons.emplace_back(kinds[i].name, reason);
+      reasons.emplace_back(name, reason);
   }
   std::vector<std::string> faults;
   for (const auto& [names, reason] : reasons) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +28,7 @@ class TestedKinds {
   const Input& input_;
   ContactKinds requested_, tested_ = ContactKinds::none;
   std::uint64_t frames_ = 0;
-  std::array<std::optional<NothingToTest>, 4> reasons_;  // by the order of the kinds
+  std::map<ContactKinds, NothingToTest> reasons_;  // the last ones
   std::uint64_t steps_with_turns_ = 0;
   std::optional<std::uint64_t> first_turn_;  // frame
   std::optional<ObjectId> turned_;           // in this frame

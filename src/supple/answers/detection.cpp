@@ -26,19 +26,20 @@ bool Detection::run(const Question& question, std::uint64_t max_contacts, const 
   stats.octrees_rebuilt = rebuilt.objects;
   stats.triangles_rebuilt = rebuilt.triangles;
   stats.rebuild_seconds = stage.lap();
-  if (question_.searches_at_rest() && !find_contacts(max_contacts, stop, stats)) return false;
-  if (question_.is_continuous() && !find_impacts(max_contacts, stop, stats)) return false;
-  if (question_.has_proximity() && !find_proximity(max_contacts, stop, stats)) return false;
+  const PassInput input{pairs_.jobs(), world_.versions(), max_contacts, stop, world_.parallel};
+  if (question_.searches_at_rest() && !find_contacts(input, stats)) return false;
+  if (question_.is_continuous() && !find_impacts(input, stats)) return false;
+  if (question_.has_proximity() && !find_proximity(input, stats)) return false;
   stage.lap();
   if (question_.has_penetration()) {
-    if (!find_penetrations(stop, stats)) return false;
+    if (!find_penetrations(input, stats)) return false;
     stats.penetration_seconds = stage.lap();
   }
   list_non_finite();
   return true;
 }
 
-bool Detection::find_contacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats) {
+bool Detection::find_contacts(const PassInput& input, StepStats& stats) {
   intersected_objects_.clear();
   for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
     WorldObject* const object = world_.at(slot);
@@ -54,26 +55,23 @@ bool Detection::find_contacts(std::uint64_t max_contacts, const StopSignal& stop
   const IntersectionSearch search{question_.has_intersections(),
                                   question_.contact_points || question_.has_penetration(),
                                   question_.colliding_vertices};
-  return intersection_pass_.run(pairs_.jobs(), intersected_objects_, world_.versions(), search, max_contacts,
-                                stop, world_.parallel, stats);
+  return intersection_pass_.run(input, intersected_objects_, search, stats);
 }
 
-bool Detection::find_impacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats) {
+bool Detection::find_impacts(const PassInput& input, StepStats& stats) {
   list_moving_objects(world_, MovingShape::Part::way, moving_objects_);
-  return impact_pass_.run(pairs_.jobs(), moving_objects_, world_.versions(), question_.impact, max_contacts,
-                          stop, world_.parallel, stats);
+  return impact_pass_.run(input, moving_objects_, question_.impact, stats);
 }
 
-bool Detection::find_proximity(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats) {
+bool Detection::find_proximity(const PassInput& input, StepStats& stats) {
   list_moving_objects(world_, MovingShape::Part::end, moving_objects_);
-  return proximity_pass_.run(pairs_.jobs(), moving_objects_, world_.versions(),
-                             {question_.proximity_listing, question_.impact.kinds}, max_contacts, stop,
-                             world_.parallel, stats);
+  return proximity_pass_.run(input, moving_objects_, {question_.proximity_listing, question_.impact.kinds},
+                             stats);
 }
 
-bool Detection::find_penetrations(const StopSignal& stop, StepStats& stats) {
+bool Detection::find_penetrations(const PassInput& input, StepStats& stats) {
   penetrated_objects_.assign(world_.slot_count(), {});
-  for (const auto& [a, b] : pairs_.jobs()) {
+  for (const auto& [a, b] : input.jobs) {
     for (const std::uint32_t slot : {a, b}) {
       if (penetrated_objects_[slot].surface.octree != nullptr) continue;
       WorldObject& object = world_[slot];
@@ -87,9 +85,7 @@ bool Detection::find_penetrations(const StopSignal& stop, StepStats& stats) {
   found.groups = intersection_pass_.groups();
   found.contacts = intersection_pass_.contacts();
   found.contact_points = intersection_pass_.contact_points();
-  if (!penetration_pass_.run(pairs_.jobs(), penetrated_objects_, world_.versions(), found, question_.depths,
-                             stop, world_.parallel))
-    return false;
+  if (!penetration_pass_.run(input, penetrated_objects_, found, question_.depths)) return false;
   stats.penetrations = penetration_pass_.penetrations().size();
   stats.curves = penetration_pass_.curves().curves.size();
   return true;

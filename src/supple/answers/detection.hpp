@@ -35,10 +35,10 @@ class Detection {
 
  private:
   /// These return false when they were stopped.
-  bool find_contacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats);
-  bool find_impacts(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats);
-  bool find_proximity(std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats);
-  bool find_penetrations(const StopSignal& stop, StepStats& stats);
+  bool find_contacts(const PassInput& input, StepStats& stats);
+  bool find_impacts(const PassInput& input, StepStats& stats);
+  bool find_proximity(const PassInput& input, StepStats& stats);
+  bool find_penetrations(const PassInput& input, StepStats& stats);
   void check_exact_bits() const;
   void list_non_finite();
 

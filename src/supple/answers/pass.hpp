@@ -21,6 +21,15 @@
 
 namespace supple {
 
+/// What all passes of a step read, besides their objects.
+struct PassInput {
+  std::span<const ContactJob> jobs;         ///< ascending; they contain indices of the objects
+  std::span<const std::uint64_t> versions;  ///< of the objects' positions and margins
+  std::uint64_t max_contacts = ContactLimit::unlimited;
+  StopSignal stop{};
+  const Parallel& parallel;
+};
+
 /// What a worker of any pass has. Passes add to it; `start` prepares for a search.
 template <class FoundType>
 struct PassWorker {
@@ -100,14 +109,13 @@ class Pass {
 
   /// Runs all jobs whose outcome is not that of the previous step. Returns false when it was stopped; the
   /// lists are then not valid. Records after the first `wanted` may be missing.
-  bool run_open_jobs(std::span<const std::uint64_t> versions, bool is_same_search, std::uint64_t wanted,
-                     const Parallel& parallel, StepStats& stats) {
+  bool run_open_jobs(const PassInput& input, bool is_same_search, std::uint64_t wanted, StepStats& stats) {
     Timer timer;
-    outcomes_.plan(jobs_, versions, is_same_search);
+    outcomes_.plan(jobs_, input.versions, is_same_search);
     limit_.start(wanted, jobs_.size());
     for (std::uint32_t job = 0; limit_.is_set() && job < jobs_.size(); ++job)
       limit_.add(job, outcomes_.ranges(job)[0].count);
-    run_tasks(outcomes_.open_jobs(), parallel);
+    run_tasks(outcomes_.open_jobs(), input.parallel);
     add_stats(workers_, timer.lap(), stats);
     return !stop_.stop_requested();
   }

@@ -260,16 +260,16 @@ std::optional<NothingToTest> UntestedKinds::nothing_to_test(const World& world, 
 
 std::span<const UntestedKind> UntestedKinds::list(const World& world, const Question& question,
                                                   const DetectResult& found) {
-  std::size_t count = 0;
+  untested_.clear();
   const auto list = [&](ContactKinds kind, bool has_contacts) {
     if (!contains(question.contacts, kind) || has_contacts) return;
-    if (const auto reason = nothing_to_test(world, question, kind)) untested_[count++] = {kind, *reason};
+    if (const auto reason = nothing_to_test(world, question, kind)) untested_.push_back({kind, *reason});
   };
   list(ContactKinds::intersection, !found.groups.empty());
   list(ContactKinds::continuous, !found.continuous_groups.empty());
   list(ContactKinds::proximity, !found.proximity_groups.empty());
   list(ContactKinds::penetration, !found.penetration_groups.empty() || !found.contained_parts.empty());
-  return std::span(untested_).first(count);
+  return untested_;
 }
 
 }  // namespace supple

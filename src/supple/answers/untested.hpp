@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -25,7 +24,7 @@ class UntestedKinds {
   template <class Accept>
   bool any_candidate_pair(const World& world, ContactKinds kind, const Accept& accept) const;
 
-  std::array<UntestedKind, 4> untested_;
+  std::vector<UntestedKind> untested_;
   std::vector<std::uint32_t> candidates_;  // slots of objects with something to test
 };
 

@@ -53,7 +53,7 @@ class Fans {
   std::span<const ProximityPair> near(ProximityPass& pass, ProximityListing listing,
                                       std::uint64_t max_pairs) const {
     StepStats stats;
-    pass.run(jobs_, listed_, versions_, {listing}, max_pairs, {}, Parallel(1), stats);
+    pass.run({jobs_, versions_, max_pairs, {}, Parallel(1)}, listed_, {listing}, stats);
     return pass.pairs();
   }
   std::span<const ContinuousContact> touching(ImpactPass& pass, ContinuousListing listing) const {
@@ -61,7 +61,7 @@ class Fans {
     ImpactSearchOptions options;
     options.impact.min_separation = 1.02;
     options.listing = listing;
-    pass.run(jobs_, listed_, versions_, options, any_number, {}, Parallel(1), stats);
+    pass.run({jobs_, versions_, any_number, {}, Parallel(1)}, listed_, options, stats);
     return pass.contacts();
   }
 
@@ -144,8 +144,8 @@ TEST(BoundedMemory, OfTheFirstIntersectionsIsLimited) {
       const ContactJob job{0, 0};
       const std::uint64_t version = 1;
       StepStats stats;
-      pass.run({&job, 1}, {&listed, 1}, {&version, 1}, {.colliding_vertices = false}, most, {},
-               Parallel(threads), stats);
+      pass.run({{&job, 1}, {&version, 1}, most, {}, Parallel(threads)}, {&listed, 1},
+               {.colliding_vertices = false}, stats);
       return pass.contacts();
     };
     IntersectionPass all;

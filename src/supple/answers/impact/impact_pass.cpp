@@ -97,11 +97,9 @@ int bits_of(const ElementMotion& motion, double separation) {
 
 }  // namespace
 
-bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                     std::span<const std::uint64_t> versions, const ImpactSearchOptions& options,
-                     std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
-                     StepStats& stats) {
-  begin(jobs, objects, stop);
+bool ImpactPass::run(const PassInput& input, std::span<const MovingObject> objects,
+                     const ImpactSearchOptions& options, StepStats& stats) {
+  begin(input.jobs, objects, input.stop);
   const bool is_same_search = options.impact == last_options_.impact &&
                               options.kinds == last_options_.kinds &&
                               options.listing == last_options_.listing;
@@ -109,12 +107,12 @@ bool ImpactPass::run(std::span<const ContactJob> jobs, std::span<const MovingObj
   search_ = Search::all;
   latest_ = end_of_search(options_.impact);
   // Which contacts are the first of an element is known when all were found.
-  const std::uint64_t most = lists_first() ? ContactLimit::unlimited : max_contacts;
-  if (!run_open_jobs(versions, is_same_search, most, parallel, stats)) return false;
+  const std::uint64_t most = lists_first() ? ContactLimit::unlimited : input.max_contacts;
+  if (!run_open_jobs(input, is_same_search, most, stats)) return false;
   Timer timer;
-  gather(parallel);
+  gather(input.parallel);
   end(most);
-  if (lists_first()) is_truncated_ = first_contacts_.choose(records_, max_contacts, groups_);
+  if (lists_first()) is_truncated_ = first_contacts_.choose(records_, input.max_contacts, groups_);
   stats.contacts += contacts().size();
   stats.sort_and_events_seconds += timer.lap();
   return true;

@@ -80,12 +80,10 @@ struct ImpactWorker : PassWorker<ContinuousContact> {
 /// phase hands its candidates to the exact stage in batches.
 class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, ContinuousContact> {
  public:
-  /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. `jobs` ascend and
-  /// contain indices of `objects`; `versions` are those of the objects' positions. Returns false when it was
-  /// stopped; the lists are then not valid.
-  bool run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-           std::span<const std::uint64_t> versions, const ImpactSearchOptions& options,
-           std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel, StepStats& stats);
+  /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. Returns false
+  /// when it was stopped; the lists are then not valid.
+  bool run(const PassInput& input, std::span<const MovingObject> objects, const ImpactSearchOptions& options,
+           StepStats& stats);
   /// The contact with the earliest time; the first in canonical order among equal times. Does not change the
   /// lists.
   std::optional<ContinuousContact> find_earliest(std::span<const ContactJob> jobs,

@@ -53,17 +53,15 @@ std::span<const TrianglePair> in_order_of_results(std::span<const TrianglePair> 
 
 }  // namespace
 
-bool IntersectionPass::run(std::span<const ContactJob> jobs, std::span<const IntersectedObject> objects,
-                           std::span<const std::uint64_t> versions, const IntersectionSearch& search,
-                           std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel,
-                           StepStats& stats) {
-  begin(jobs, objects, stop);
+bool IntersectionPass::run(const PassInput& input, std::span<const IntersectedObject> objects,
+                           const IntersectionSearch& search, StepStats& stats) {
+  begin(input.jobs, objects, input.stop);
   // Colliding vertices are not reused from the previous step.
   const bool is_same_search = std::exchange(search_, search) == search && !search.colliding_vertices;
-  if (!run_open_jobs(versions, is_same_search, max_contacts, parallel, stats)) return false;
+  if (!run_open_jobs(input, is_same_search, input.max_contacts, stats)) return false;
   Timer timer;
-  gather(parallel);
-  end(max_contacts);
+  gather(input.parallel);
+  end(input.max_contacts);
   if (is_truncated() && search_.contact_points)
     points_.resize(records_.empty() ? 0 : records_.back().first_point + records_.back().point_count);
   gather_colliding_vertices();

@@ -92,12 +92,10 @@ struct IntersectionWorker : PassWorker<FoundContact> {
 /// result: a worker drops those of a job after the first `max_contacts`.
 class IntersectionPass : public Pass<IntersectionPass, IntersectedObject, IntersectionWorker, Contact> {
  public:
-  /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. `jobs` ascend and
-  /// contain indices of `objects`; `versions` are those of the objects' positions. Returns false when it was
-  /// stopped; the lists are then not valid.
-  bool run(std::span<const ContactJob> jobs, std::span<const IntersectedObject> objects,
-           std::span<const std::uint64_t> versions, const IntersectionSearch& search,
-           std::uint64_t max_contacts, const StopSignal& stop, const Parallel& parallel, StepStats& stats);
+  /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. Returns false
+  /// when it was stopped; the lists are then not valid.
+  bool run(const PassInput& input, std::span<const IntersectedObject> objects,
+           const IntersectionSearch& search, StepStats& stats);
 
   std::span<const Contact> contacts() const { return records_; }
   std::span<const ContactPoint> contact_points() const { return points_; }

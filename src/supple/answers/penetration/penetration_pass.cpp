@@ -28,24 +28,23 @@ std::span<Item> part_of(std::vector<Item>& list, Range range) {
 
 }  // namespace
 
-bool PenetrationPass::run(std::span<const ContactJob> jobs, std::span<const PenetratedObject> objects,
-                          std::span<const std::uint64_t> versions, const DetectResult& result,
-                          PenetrationDepths depths, const StopSignal& stop, const Parallel& parallel) {
+bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObject> objects,
+                          const DetectResult& result, PenetrationDepths depths) {
   objects_ = objects;
-  list_pairs(jobs);
-  outcomes_.plan(pairs_, versions, std::exchange(depths_, depths) == depths);
+  list_pairs(input.jobs);
+  outcomes_.plan(pairs_, input.versions, std::exchange(depths_, depths) == depths);
   tasks_.clear();
   for (const std::uint32_t i : outcomes_.open_jobs()) tasks_.push_back({i, {}});
   outcomes_.expect_tasks(tasks_.size());
-  workers_.resize(parallel.worker_count());
+  workers_.resize(input.parallel.worker_count());
   for (Worker& worker : workers_) {
     worker.curves.clear();
     worker.inside.clear();
     worker.on_surface.clear();
     worker.parts.clear();
   }
-  parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
+  input.parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t i = begin; i < end && !input.stop.stop_requested(); ++i) {
       const auto first = sizes_of(workers_[w]);
       run_task(task_of(pairs_[tasks_[i].job], result), result, workers_[w]);
       const auto last = sizes_of(workers_[w]);
@@ -55,9 +54,9 @@ bool PenetrationPass::run(std::span<const ContactJob> jobs, std::span<const Pene
         outcome.ranges[list] = {first[list], last[list] - first[list]};
     }
   });
-  if (stop.stop_requested()) return false;
+  if (input.stop.stop_requested()) return false;
   gather();
-  if (!find_depths(stop, parallel)) return false;
+  if (!find_depths(input.stop, input.parallel)) return false;
   outcomes_.complete();
   return true;
 }

@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "answers/contact_tasks.hpp"
-#include "answers/job_outcomes.hpp"
+#include "answers/pass.hpp"
 #include "answers/penetration/curve_finder.hpp"
 #include "answers/penetration/depth_search.hpp"
 #include "answers/penetration/surface_view.hpp"
@@ -41,11 +40,9 @@ struct PenetratedObject {
 /// memory between steps.
 class PenetrationPass {
  public:
-  /// `jobs` ascend and contain indices of `objects`; `versions` are those of the objects' positions; `result`
-  /// has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
-  bool run(std::span<const ContactJob> jobs, std::span<const PenetratedObject> objects,
-           std::span<const std::uint64_t> versions, const DetectResult& result, PenetrationDepths depths,
-           const StopSignal& stop, const Parallel& parallel);
+  /// `result` has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
+  bool run(const PassInput& input, std::span<const PenetratedObject> objects, const DetectResult& result,
+           PenetrationDepths depths);
 
   std::span<const PenetrationGroup> groups() const { return groups_; }
   std::span<const Penetration> penetrations() const { return penetrations_; }

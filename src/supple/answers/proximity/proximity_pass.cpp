@@ -85,26 +85,24 @@ void ProximityWorker::start() {
   recent.fill(none);
 }
 
-bool ProximityPass::run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                        std::span<const std::uint64_t> versions, const ProximitySearch& search,
-                        std::uint64_t max_pairs, const StopSignal& stop, const Parallel& parallel,
-                        StepStats& stats) {
-  begin(jobs, objects, stop);
+bool ProximityPass::run(const PassInput& input, std::span<const MovingObject> objects,
+                        const ProximitySearch& search, StepStats& stats) {
+  begin(input.jobs, objects, input.stop);
   const bool is_same_search = std::exchange(search_, search) == search;
-  max_pairs_ = max_pairs;
+  max_pairs_ = input.max_contacts;
   // Two workers may find the same pair, so `limit_` cannot count them; each worker has its own limit.
-  if (!run_open_jobs(versions, is_same_search, ContactLimit::unlimited, parallel, stats)) return false;
+  if (!run_open_jobs(input, is_same_search, ContactLimit::unlimited, stats)) return false;
   for (Worker& worker : workers_) worker.stats = {};
   Timer timer;
-  sort_found(parallel);
+  sort_found(input.parallel);
   outcomes_.place(tasks_.tasks());
   outcomes_.move_known<0>(records_);
   stats.sort_and_events_seconds += timer.lap();
-  compute_found(parallel);
+  compute_found(input.parallel);
   for (const Worker& worker : workers_) stats.exact_fallbacks += worker.stats.exact_fallbacks;
   stats.exact_seconds += timer.lap();
   outcomes_.complete();
-  end(max_pairs);
+  end(max_pairs_);
   stats.proximity_pairs += records_.size();
   stats.sort_and_events_seconds += timer.lap();
   return true;

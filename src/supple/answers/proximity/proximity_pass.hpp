@@ -67,12 +67,10 @@ struct ProximityWorker : PassWorker<FoundPair> {
 /// is full, and drops those after the first `max_pairs`.
 class ProximityPass : public Pass<ProximityPass, MovingObject, ProximityWorker, ProximityPair> {
  public:
-  /// Finds the first `max_pairs` pairs in canonical order. `jobs` ascend and contain indices of `objects`,
-  /// which are at rest; `versions` are those of the objects' positions and margins. Returns false when it was
-  /// stopped; the lists are then not valid.
-  bool run(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-           std::span<const std::uint64_t> versions, const ProximitySearch& search, std::uint64_t max_pairs,
-           const StopSignal& stop, const Parallel& parallel, StepStats& stats);
+  /// Finds the first `max_contacts` pairs in canonical order; the objects are at rest. Returns false when it
+  /// was stopped; the lists are then not valid.
+  bool run(const PassInput& input, std::span<const MovingObject> objects, const ProximitySearch& search,
+           StepStats& stats);
 
   std::span<const ProximityPair> pairs() const { return records_; }
 
