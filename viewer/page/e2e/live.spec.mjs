@@ -7,14 +7,16 @@ const nine = join(scenes, "nine.toml");
 
 async function movesPausesAndSteps(stage) {
   const { page } = await stage.view(nine);
-  const before = { at: await page.evaluate(() => supple.positionOf(0, 0)), picture: await picture(page) };
-  await until(page, () => supple.model.frame.text.step > 5);
+  const before = { ...(await page.evaluate(() => ({ step: supple.model.frame.text.step, at: supple.positionOf(0, 0) }))), picture: await picture(page) };
+  await until(page, (before) => supple.model.frame.text.step > before + 5, before.step);
   assert.notDeepEqual(await page.evaluate(() => supple.positionOf(0, 0)), before.at);
   assert.notEqual(await picture(page), before.picture);
 
-  await pause(page);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await until(page, () => !supple.model.frame.text.playing);
   const paused = await step(page);
   await page.waitForTimeout(400);
+  await settled(page);
   assert.equal(await step(page), paused);
   await page.getByRole("button", { name: "Step", exact: true }).click();
   await until(page, (wanted) => supple.model.frame.text.step === wanted, paused + 1);
@@ -256,6 +258,7 @@ async function picksATriangle(stage) {
 
 async function contactTableFlies(stage) {
   const { page } = await stage.view(nine);
+  await page.emulateMedia({ reducedMotion: "no-preference" });  // the camera flies
   await until(page, () => supple.model.frame.contacts.length > 400);
   await pause(page);
   await page.getByRole("tab", { name: "Contacts" }).click();

@@ -91,7 +91,7 @@ async function plotsSeek(stage) {
   await page.getByRole("tab", { name: "Plots" }).click();
   const plot = page.locator("figure .u-over").first();
   await plot.waitFor();
-  await page.waitForTimeout(400);
+  await settled(page);
   const box = await plot.boundingBox();
   await page.mouse.move(box.x + box.width * 0.25, box.y + 20);
   await page.mouse.click(box.x + box.width * 0.5, box.y + 20);

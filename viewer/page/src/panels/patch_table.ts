@@ -10,8 +10,9 @@ export class PatchTable {
   readonly element: HTMLElement;
   private readonly summary = h("p", { class: "hint", "aria-live": "off" });
   private readonly window: RowWindow<Row>;
-  /** A row of this frame only: patches have no identity from frame to frame. */
+  /** A row of this step only: patches have no identity from step to step. */
   private chosen = -1;
+  private state = "";
 
   constructor(private readonly model: Model, private readonly flyTo: (point: number[], reach: number) => void) {
     this.window = new RowWindow(
@@ -37,7 +38,10 @@ export class PatchTable {
   }
 
   private update(): void {
-    this.chosen = -1;
+    const { generation, step } = this.model.frame?.text ?? {};
+    const state = `${generation} ${step}`;
+    if (state !== this.state) this.chosen = -1;
+    this.state = state;
     const { scene } = this.model;
     const finds = scene?.contacts.includes("penetration") ?? false;
     const text = finds ? `${readable(this.count)} ${this.count === 1 ? "patch" : "patches"}` : "Only scenes with the contacts “penetration” have patches (Settings).";
