@@ -103,7 +103,7 @@ async function saysWhatIsBroken(stage) {
   const page = await stage.page();
   await page.addInitScript(() => {
     document.addEventListener("readystatechange", () => {
-      const show = document.getElementById("supple-show");
+      const show = document.getElementById("supple-scene");
       if (show) show.textContent = "AAAA";
     });
   });
