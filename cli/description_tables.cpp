@@ -283,14 +283,13 @@ void print_sections() {
       "  kinds: readonly string[];\n  perObject: boolean;\n}}\n\n");
   std::vector<std::string> kinds;
   for (const char* name : viewer::names_of_message_kinds) kinds.push_back(fmt::format("\"{}\"", name));
-  fmt::print("export const KINDS = [{}] as const;\n\nexport const FORMS: Record<number, Form> = {{\n",
-             fmt::join(kinds, ", "));
+  fmt::print("export const KINDS = [{}] as const;\n\nexport const FORMS = {{\n", fmt::join(kinds, ", "));
   for (const viewer::SectionForm& form : viewer::section_forms)
     fmt::print("  {}: {{ name: \"{}\", array: {}, width: {}, kinds: [{}], perObject: {} }},\n",
                static_cast<std::uint32_t>(form.tag), form.name,
                arrays_of_sections[static_cast<std::size_t>(form.scalar)], form.width,
                fmt::join(kinds_of(form, "\""), ", "), form.is_of_object);
-  fmt::print("}};\n");
+  fmt::print("}} as const satisfies Record<number, Form>;\n");
 }
 
 void print_description_tables() {

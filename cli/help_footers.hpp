@@ -7,11 +7,11 @@ namespace supple::cli {
 inline constexpr const char* program_footer = R"(Examples:
   supple detect rabbit.obj fish.ply         which triangles of the two intersect?
   supple detect --contacts continuous --self --sequence 'frame_*.obj'
-                                            what touches on the way between two frames, and when?
+                                            what touches between two frames, and when?
   supple detect --help                      every option, with examples
   supple simulate scene.toml --frames 300 --record run.h5
                                             simulate moving objects and record their contacts
-  supple view run.h5                        show a scene or a recording in a browser
+  supple view run.h5                        view a scene or a recording in a browser
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
   supple query closest points.txt body.obj  nearest triangles of points; also inside, rays, distance
   supple ccd-queries edge-edge/*.csv        continuous queries, compared with published answers
@@ -44,7 +44,7 @@ inline constexpr const char* detect_footer = R"(Examples:
   supple detect a.obj b.obj --max-contacts 1000 --time-limit 60 --json result.json
       At most 1000 contacts of each kind and a minute. The JSON says whether it is truncated.
   supple detect --contacts continuous --self --sequence 'frame_*.ply' --json impacts.json
-      Every vertex and face and every two edges that touch on the way between two frames, and the time
+      Every vertex and face and every two edges that touch on their paths between two frames, and the time
       when they do.
   supple detect --contacts continuous --min-separation 0.001 scene.toml --frames 300
       Elements count as touching when they come within 0.001.
@@ -86,7 +86,7 @@ inline constexpr const char* simulate_footer = R"(Examples:
       Shorter steps than in the scene file.
 
 Frame 0 is the start, and frame k is the state after k steps. The continuous contacts of frame k are those
-on the way from frame k - 1 to frame k. Ctrl-C ends the run; files and tables are complete up to the last
+on the paths from frame k - 1 to frame k. Ctrl-C ends the run; files and tables are complete up to the last
 whole step.)";
 
 inline constexpr const char* view_footer = R"(Examples:

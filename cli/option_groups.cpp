@@ -13,7 +13,7 @@
 namespace supple::cli {
 namespace {
 
-constexpr std::array tested_object_keys{"self", "neighbours", "weld", "margin", "own_separation", "solid"};
+constexpr std::array tested_object_keys{"self", "neighbours", "weld", "margin", "solid"};
 
 }  // namespace
 
@@ -144,8 +144,6 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
   add_parts(app, options.parts, "Detection");
   dependences.push_back({app.get_option("--margin"), [&options] { return has_proximity(options.scene); },
                          "--contacts proximity"});
-  dependences.push_back({app.get_option("--own-separation"),
-                         [&options] { return has_continuous(options.scene); }, "--contacts continuous"});
   dependences.push_back({app.get_option("--neighbours"),
                          [&options] { return has_intersections(options.scene); }, "--contacts intersection"});
   dependences.push_back({app.get_option("--solid"), [&options] { return has_penetration(options.scene); },

@@ -46,7 +46,7 @@ int main() {
       velocities[i] =
           velocities[i] * (1 - damping * time_step) + (forces[i] + Vec3d{0, gravity, 0}) * time_step;
 
-    // 2. Find what would touch on the way, stop its approach, and look again.
+    // 2. Find what would touch on the paths, stop its approach, and look again.
     std::size_t found = 0, left = 0;
     for (int round = 0; round < 10; ++round) {
       for (std::size_t i = 0; i < now.size(); ++i) next[i] = now[i] + velocities[i] * time_step;

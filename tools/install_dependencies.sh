@@ -22,7 +22,7 @@ if [ "${1:-}" != "--without-viewer" ]; then
   command -v npm >/dev/null || packages+=(nodejs npm)
 fi
 if [ "${1:-}" = "--ci" ]; then
-  packages+=(git libclang-rt-19-dev clang-format python3-clang-19 python3-h5py chromium)
+  packages+=(git libclang-rt-19-dev clang-format python3-clang-19 python3-h5py chromium chromium-headless-shell)
 fi
 if [ "${1:-}" = "--bench" ]; then
   packages+=(git pkg-config libembree-dev libcgal-dev libfcl-dev libbullet-dev libode-dev)

@@ -83,7 +83,7 @@ constexpr std::array<FeatureKind, 2> feature_kinds(ElementPairKind kind) {
   return {vertex, vertex};
 }
 
-/// Two elements that touch on their way within the step. Bodies that already cut through each other at the
+/// Two elements that touch on their paths within the step. Bodies that already cut through each other at the
 /// start of the step have no continuous contact until two of their elements touch; `Contact` reports them.
 /// Edges are the distinct pairs of vertices of the triangles and those of `ObjectOptions::edges`. Within one
 /// object, elements that share a vertex id are not a contact, and edge a or vertex a is the smaller one.

@@ -197,8 +197,7 @@ struct Description<ObjectOptions> {
         .member = &Options::min_separation,
         .doc = "Continuous contacts: added to the minimum separation, for each of two objects",
         .range = ValueRange::from(0),
-        .unit = "length",
-        .key = "own_separation"});
+        .unit = "length"});
     visitor(Field<Options, bool>{
         .name = "solid",
         .member = &Options::solid,
@@ -258,10 +257,10 @@ struct Description<SceneOptions> {
         .member = &Options::contacts,
         .doc =
             "Contacts to find: pairs of triangles that intersect (intersection); vertices and faces, and "
-            "pairs of edges, that touch on the way from the frame before (continuous); pairs within the "
+            "pairs of edges, that touch on their paths from the frame before (continuous); pairs within the "
             "margins of their objects (proximity); vertices inside solid objects, contained parts and curves "
             "of intersection (penetration, which includes intersection); several of these with commas "
-            "between them; or none. Bodies that already cut through each other at the start of the way are "
+            "between them; or none. Bodies that already cut through each other at the start of the paths are "
             "found by intersection, not by continuous"});
     visitor(Field<Options, bool>{.name = "contact_points",
                                  .member = &Options::contact_points,

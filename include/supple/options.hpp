@@ -57,7 +57,7 @@ enum class BroadPhaseMethod : std::uint8_t {
 enum class ContactKinds : std::uint8_t {
   none = 0,          ///< object pairs and candidate counts only
   intersection = 1,  ///< every pair of triangles that intersects, with normal and points
-  /// Every vertex and face and every two edges that touch on their way within the step. Bodies that already
+  /// Every vertex and face and every two edges that touch on their paths within the step. Bodies that already
   /// cut through each other at the start of the step are found by `intersection`, not by `continuous`.
   continuous = 2,
   /// Every two features, or elements, within the margins of their objects at the current positions; see

@@ -345,7 +345,7 @@ constexpr void for_each_list(Visitor&& visitor) {
       [](auto& result) -> auto& { return result.contact_points; });
   list(
       ResultList<ContinuousContact>{"continuous_contacts", "continuous contact",
-                                    "two elements that touch on their way from the last frame to this one"},
+                                    "two elements that touch on their paths from the last frame to this one"},
       [](auto& result) -> auto& { return result.continuous_contacts; });
   list(
       ResultList<ProximityPair>{"proximity_pairs", "proximity pair",

@@ -168,8 +168,8 @@ class Scene {
   /// The returned step never exceeds the exact one, and is shorter by at most 2^-18 of it.
   ///
   /// Elements that share a point at the start end the step there, unless they touch at rest: the vertices of
-  /// the features that touch, as `ElementDistance` names them, all move by exactly the same way. Such a pair
-  /// does not limit the step: two objects that rest, or fixed vertices on a static object.
+  /// the features that touch, as `ElementDistance` names them, all move by exactly the same vector. Such a
+  /// pair does not limit the step: two objects that rest, or fixed vertices on a static object.
   ///
   /// Otherwise the step is positive. It is proven that also the positions from + t (to - from), computed in
   /// double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements

@@ -48,7 +48,7 @@ class Options(ProgramTest):
         super().setUp()
         self.write("scene.toml", SCENE)
         result = self.detect("scene.toml")
-        self.defaults = result["options"] | result["objects"][1]["options"]
+        self.defaults = result["objects"][1]["options"] | result["options"]
 
     def others(self):
         """Maps each key to the arguments that change the option, and to the resulting JSON value."""
@@ -77,7 +77,7 @@ class Options(ProgramTest):
         with_octree = ("region_test", "scene_octree_max_level", "scene_octree_expand_at", "scene_octree_arity", "scene_octree_root")
         proximity = {"contacts": (["--contacts", "proximity"], "proximity")}
         penetration = {"contacts": (["--contacts", "penetration"], "intersection,penetration")}
-        of_continuous = ("min_separation", "undecided", "max_time", "skip_parting", "continuous_listing", "own_separation", "solid")
+        of_continuous = ("min_separation", "undecided", "max_time", "skip_parting", "continuous_listing", "solid")
         of_proximity = ("margin", "proximity_listing", "solid")
         of_intersections = ("neighbours",)
         of_penetration = ("depths",)
@@ -95,7 +95,7 @@ class Options(ProgramTest):
             yield words, {key: told for key, (_, told) in others.items()}
 
     def told(self, result):
-        return [result["options"] | each["options"] for each in result["objects"]]
+        return [each["options"] | result["options"] for each in result["objects"]]
 
     def expect(self, result, expected):
         for told in self.told(result):
@@ -125,9 +125,9 @@ class Options(ProgramTest):
         self.assert_one_line_error(self.run_here("detect", "run.h5", "--no-contact-points"), "--contacts intersection")
 
     def test_from_a_scene_file_through_a_recording(self):
-        keys = 'self = true\nneighbours = "exact"\nown_separation = 0.5\nweld = true\nstatic = true\nmargin = 0.25\nsolid = true\ngroup = 6\nmask = 5\nmax_level = 3\nleaf_size = 5\ntree_arity = 4\nobject_octree = "regular"\nrebuild_degraded = false\n'
+        keys = 'self = true\nneighbours = "exact"\nmin_separation = 0.5\nweld = true\nstatic = true\nmargin = 0.25\nsolid = true\ngroup = 6\nmask = 5\nmax_level = 3\nleaf_size = 5\ntree_arity = 4\nobject_octree = "regular"\nrebuild_degraded = false\n'
         self.write("scene.toml", SCENE + keys)
-        expected = {"self": True, "neighbours": "exact", "own_separation": 0.5, "weld": True, "static": True, "margin": 0.25, "solid": True, "group": 6, "mask": 5, "max_level": 3, "leaf_size": 5, "tree_arity": 4,
+        expected = {"self": True, "neighbours": "exact", "min_separation": 0.5, "weld": True, "static": True, "margin": 0.25, "solid": True, "group": 6, "mask": 5, "max_level": 3, "leaf_size": 5, "tree_arity": 4,
                     "object_octree": "regular", "rebuild_degraded": False}
         self.assertEqual(set(expected), set(self.detect("scene.toml")["objects"][1]["options"]))
         done = self.run_here("simulate", "scene.toml", "--frames", "2", "--quiet", "--record", "run.h5")
@@ -141,8 +141,9 @@ class Options(ProgramTest):
         self.assertIn('"frame":4', new)
 
     def test_mistyped_key(self):
-        self.write("scene.toml", SCENE + "leafsize = 3\n")
-        self.assert_one_line_error(self.run_here("detect", "scene.toml"), "leafsize", "did you mean leaf_size?")
+        for mistyped, meant in (("leafsize", "leaf_size"), ("own_separation", "min_separation")):
+            self.write("scene.toml", SCENE + f"{mistyped} = 3\n")
+            self.assert_one_line_error(self.run_here("detect", "scene.toml"), mistyped, f"did you mean {meant}?")
 
 
 if __name__ == "__main__":

@@ -162,7 +162,6 @@ class SceneOptions(ProgramTest):
             (("--max-time", "0.5"), ("--max-time", "--contacts continuous")),
             (("--element-kinds", "edge-edge"), ("--element-kinds", "--contacts continuous or proximity")),
             (("--contacts", "continuous", "--neighbours", "exact", "--self"), ("--neighbours", "--contacts intersection")),
-            (("--own-separation", "1"), ("--own-separation", "--contacts continuous")),
         ):
             with self.subTest(given=given):
                 self.assert_one_line_error(self.run_here("detect", "a.obj", *given), *parts)

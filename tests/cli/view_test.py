@@ -341,12 +341,12 @@ class Export(ViewTest):
 
     def test_show_holds_scene_or_frames(self):
         self.write("scene.toml", BODY)
-        scene = self.cargo(self.export("scene.toml"), "supple-show")
-        self.assertEqual(scene, self.cargo(self.export("scene.toml"), "supple-show"), "second export differs")
-        self.assertNotEqual(scene, self.cargo(self.export("scene.toml", "--seed", 5), "supple-show"))
+        scene = self.cargo(self.export("scene.toml"), "supple-scene")
+        self.assertEqual(scene, self.cargo(self.export("scene.toml"), "supple-scene"), "second export differs")
+        self.assertNotEqual(scene, self.cargo(self.export("scene.toml", "--seed", 5), "supple-scene"))
         for i in range(3):
             self.write(f"frame_{i}.obj", moved(TRIANGLE, 0.125 * i, 0, 0))
-        frames = self.cargo(self.export("--sequence", "frame_*.obj"), "supple-show")
+        frames = self.cargo(self.export("--sequence", "frame_*.obj"), "supple-scene")
         # The first vertex of the last frame as floats, relative to the centre of (0, 0, 0) and (1, 1, 0).
         self.assertIn(struct.pack("<3f", 0.25 - 0.5, -0.5, 0), frames)
 

@@ -115,14 +115,14 @@ class TemporaryFile {
 
 }  // namespace
 
-std::string page_with_cargo(std::string_view page, std::span<const std::byte> show,
+std::string page_with_cargo(std::string_view page, std::span<const std::byte> scene,
                             std::span<const std::byte> module) {
   constexpr std::string_view place = "<!--supple-cargo-->";
   const std::size_t at = page.rfind(place);
   if (at == std::string_view::npos) throw Error("the page of this build has no place for a scene");
   std::string whole(page.substr(0, at));
   append_element(whole, "supple-wasm", module);
-  append_element(whole, "supple-show", show);
+  append_element(whole, "supple-scene", scene);
   whole += page.substr(at + place.size());
   return whole;
 }

@@ -14,9 +14,9 @@ inline constexpr std::uint64_t largest_page = 200'000'000;
 
 /// Makes a page that needs no server. A packed scene view and the module are compressed with gzip and
 /// embedded as base64 in elements `<script type="application/octet-stream;base64">` with the ids
-/// `supple-show` and `supple-wasm`. They replace the comment `<!--supple-cargo-->`. Throws `Error` when the
+/// `supple-scene` and `supple-wasm`. They replace the comment `<!--supple-cargo-->`. Throws `Error` when the
 /// page has no such comment.
-std::string page_with_cargo(std::string_view page, std::span<const std::byte> show,
+std::string page_with_cargo(std::string_view page, std::span<const std::byte> scene,
                             std::span<const std::byte> module);
 
 /// Replaces the file once all content is written; until then the old file stays. Throws `Error` on failure.

@@ -103,4 +103,14 @@ bool Access::knows_token(std::string_view token) const {
   return difference == 0;
 }
 
+std::string content_policy(std::string_view host) {
+  std::string policy =
+      "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src "
+      "'unsafe-inline'; img-src data: blob:; media-src blob:; font-src data:; base-uri 'none'; form-action "
+      "'none'; "
+      "frame-ancestors 'none'; connect-src 'self' ws://";
+  policy += host;
+  return policy;
+}
+
 }  // namespace supple::viewer

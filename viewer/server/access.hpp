@@ -42,4 +42,7 @@ class Access {
   std::string token_;
 };
 
+/// The resources that a page of this server may load: itself and its session. A header of its answer.
+std::string content_policy(std::string_view host);
+
 }  // namespace supple::viewer

@@ -51,9 +51,8 @@ asio::ip::address parse_address(const std::string& text) {
   error_code error;
   const auto address = asio::ip::make_address(text, error);
   if (!error) return address;
-  std::string message = text;
-  message += ": it is not an IP address; give one of this machine, such as 127.0.0.1, or 0.0.0.0 for all";
-  throw Error(message);
+  throw Error(text +
+              ": it is not an IP address; give one of this machine, such as 127.0.0.1, or 0.0.0.0 for all");
 }
 
 /// A connected page, that is, a WebSocket.
@@ -141,17 +140,6 @@ class Page : public std::enable_shared_from_this<Page> {
   bool is_paused_ = false, is_closing_ = false;
 };
 
-/// The resources that a page of this server may load: itself and its session.
-std::string content_policy(std::string_view host) {
-  std::string policy =
-      "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src "
-      "'unsafe-inline'; img-src data: blob:; media-src blob:; font-src data:; base-uri 'none'; form-action "
-      "'none'; "
-      "frame-ancestors 'none'; connect-src 'self' ws://";
-  policy += host;
-  return policy;
-}
-
 constexpr std::string_view no_token_page = R"(<!doctype html>
 <html lang="en"><meta charset="utf-8"><title>Supple</title>
 <style>body { font: 16px/1.5 system-ui, sans-serif; max-width: 40em; margin: 20vh auto; padding: 0 1em; color-scheme: light dark }</style>
@@ -204,10 +192,8 @@ class Request : public std::enable_shared_from_this<Request> {
     const auto& request = parser_.get();
     const std::string_view host = text(request[http::field::host]);
     if (!context_.access.knows_host(host)) {
-      std::string message = "This server does not have that name or port; use http://";
-      message += context_.access.host();
-      message += '\n';
-      return refuse(http::status::forbidden, message);
+      const std::string wrong = "This server does not have that name or port; use http://";
+      return refuse(http::status::forbidden, wrong + context_.access.host() + '\n');
     }
     const Target target = parse_target(text(request.target()));
     if (target.path == "/session" && websocket::is_upgrade(request)) return connect(host, target.token);
@@ -322,13 +308,9 @@ class Server::Implementation {
       acceptor.listen();
       return acceptor;
     } catch (const boost::system::system_error& error) {
-      std::string message = options.address;
-      message += ", port ";
-      message += std::to_string(options.port);
-      message += ": cannot listen: ";
-      message += error.code().message();
-      message += "; choose another port, or 0 for any free port, and an address of this machine";
-      throw Error(message);
+      throw Error(options.address + ", port " + std::to_string(options.port) +
+                  ": cannot listen: " + error.code().message() +
+                  "; choose another port, or 0 for any free port, and an address of this machine");
     }
   }
 
@@ -451,11 +433,8 @@ const std::string& Server::token() const {
 }
 
 std::string Server::url() const {
-  std::string url = "http://";
-  url += implementation_->access().host();
-  url += "/?token=";
-  url += token();
-  return url;
+  const std::string scheme = "http://";
+  return scheme + implementation_->access().host() + "/?token=" + token();
 }
 
 void Server::run(const std::function<bool()>& should_end) {

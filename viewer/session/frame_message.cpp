@@ -42,9 +42,9 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   add_positions(frame);
   add_contacts(frame);
   add_impacts(frame);
-  add_gaps(frame);
+  add_proximity_pairs(frame);
   add_penetrations(frame);
-  add_patches(frame);
+  add_curves(frame);
   add_events(frame.source.scene().result());
   add_statistics(frame);
   if (frame.layers.candidates) add_candidates(frame);
@@ -134,13 +134,13 @@ void FramePacker::add_impacts(const FrameView& frame) {
 }
 
 /// Adds the proximity pairs, each with its closest points.
-void FramePacker::add_gaps(const FrameView& frame) {
+void FramePacker::add_proximity_pairs(const FrameView& frame) {
   if (!contains(frame.source.scene().options().contacts, ContactKinds::proximity)) return;
   const auto pairs = frame.source.scene().result().proximity_pairs;
-  const std::size_t count = limited("gaps", pairs.size());
-  const auto objects = message_->add<std::array<std::uint32_t, 2>>(Tag::gaps, count);
+  const std::size_t count = limited("proximity_pairs", pairs.size());
+  const auto objects = message_->add<std::array<std::uint32_t, 2>>(Tag::proximity_pairs, count);
   for (std::size_t i = 0; i < count; ++i) objects[i] = {pairs[i].object_a.index, pairs[i].object_b.index};
-  const auto rows = message_->add<Row>(Tag::gap_points, count);
+  const auto rows = message_->add<Row>(Tag::proximity_points, count);
   const auto margin = [&](ObjectId object) { return frame.show.objects[object.index].options.margin; };
   for (std::size_t i = 0; i < count; ++i) {
     const ProximityPair& pair = pairs[i];
@@ -170,9 +170,8 @@ void FramePacker::add_penetrations(const FrameView& frame) {
   }
 }
 
-/// Adds the curves of intersection with their patches, as many as there is room for with the vertices that
-/// they enclose.
-void FramePacker::add_patches(const FrameView& frame) {
+/// Adds as many curves as there is room for with the vertices that they enclose.
+void FramePacker::add_curves(const FrameView& frame) {
   const Scene& scene = frame.source.scene();
   if (!contains(scene.options().contacts, ContactKinds::penetration)) return;
   const std::span<const IntersectionCurve> all = scene.result().curves;
@@ -181,9 +180,9 @@ void FramePacker::add_patches(const FrameView& frame) {
   };
   std::size_t count = 0;
   while (count < std::min(all.size(), most_elements) && vertex_end(all[count]) <= most_elements) ++count;
-  if (count < all.size()) omissions_.push_back({"patches", all.size()});
+  if (count < all.size()) omissions_.push_back({"curves", all.size()});
   const std::span<const IntersectionCurve> curves = all.first(count);
-  const auto ids = message_->add<Ids>(Tag::patches, count);
+  const auto ids = message_->add<Ids>(Tag::curves, count);
   for (std::size_t i = 0; i < count; ++i) {
     const IntersectionCurve& c = curves[i];
     ids[i] = {c.a.index,
@@ -195,7 +194,7 @@ void FramePacker::add_patches(const FrameView& frame) {
               c.enclosed_count_b,
               0};
   }
-  const auto rows = message_->add<Row>(Tag::patch_points, count);
+  const auto rows = message_->add<Row>(Tag::curve_points, count);
   for (std::size_t i = 0; i < count; ++i) {
     const IntersectionCurve& c = curves[i];
     rows[i] = row_of(frame.center(c.centroid), static_cast<float>(c.depth), floats(c.normal),

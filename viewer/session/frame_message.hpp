@@ -49,9 +49,9 @@ class FramePacker {
   void add_contacts(const FrameView& frame);
   void add_contact_points(const FrameView& frame, std::size_t contact_count);
   void add_impacts(const FrameView& frame);
-  void add_gaps(const FrameView& frame);
+  void add_proximity_pairs(const FrameView& frame);
   void add_penetrations(const FrameView& frame);
-  void add_patches(const FrameView& frame);
+  void add_curves(const FrameView& frame);
   void add_events(const DetectResult& result);
   void add_changes(Tag begin, Tag end, ObjectPairs& sent);
   void add_statistics(const FrameView& frame);

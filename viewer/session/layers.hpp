@@ -1,10 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "arguments.hpp"
+#include "scene_view.hpp"
 
 namespace supple::viewer {
 
@@ -26,14 +30,12 @@ struct Layers {
 };
 
 /// The requested layers by their names in the protocol.
-inline std::vector<std::string> layer_names(const Layers& layers) {
-  std::vector<std::string> names;
-  if (layers.candidates) names.emplace_back("candidates");
-  if (layers.scene_regions) names.emplace_back("scene_regions");
-  if (layers.colliding_vertices) names.emplace_back("colliding_vertices");
-  if (!layers.octree_objects.empty()) names.emplace_back("octree");
-  if (layers.colliding_nodes) names.emplace_back("colliding_nodes");
-  return names;
-}
+std::vector<std::string> layer_names(const Layers& layers);
+
+/// The layers after the command `layers`, which changes those that it names; empty after an error.
+std::optional<Layers> read_layers(Layers layers, const SceneView& scene, Arguments& arguments);
+
+/// Removes objects from `count` on.
+void keep_objects(Layers& layers, std::size_t count);
 
 }  // namespace supple::viewer

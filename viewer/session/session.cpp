@@ -1,8 +1,6 @@
 #include "session.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -19,6 +17,7 @@
 #include "json_value.hpp"
 #include "layers.hpp"
 #include "message.hpp"
+#include "object_arguments.hpp"
 #include "player.hpp"
 #include "scene_message.hpp"
 #include "settings.hpp"
@@ -30,7 +29,6 @@ namespace {
 constexpr std::int64_t most_credit = 8;
 constexpr std::size_t most_replies = 256;
 constexpr double largest = std::numeric_limits<double>::max();
-constexpr std::int64_t largest_id = std::numeric_limits<std::uint32_t>::max();
 constexpr std::int64_t largest_count = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
@@ -85,19 +83,12 @@ class Session::Implementation {
   void read(Arguments& arguments);
   void node_pairs(Arguments& arguments);
 
-  void read_octree(const JsonValue& octree, Layers& layers, Arguments& arguments) const;
-  void read_colliding_nodes(const JsonValue& nodes, Layers& layers, Arguments& arguments) const;
+  const SceneView& scene() const { return stage_->show(); }
   void set_stage(const Settings& settings);
-  static std::uint32_t id_of(const char* name, Arguments& arguments);
   bool is_of_recording(Arguments& arguments) const;
   bool is_of_simulation(Arguments& arguments) const;
-  bool fits_in_memory(const Settings& settings, Arguments& arguments) const;
-  bool has_object(std::uint32_t object, Arguments& arguments) const;
-  bool has_triangle(std::array<std::uint32_t, 2> triangle, Arguments& arguments) const;
-  bool has_vertex(std::uint32_t object, std::uint32_t vertex, Arguments& arguments) const;
 
   void fail(const std::string& message, bool fatal = false, std::span<const std::string> layers = {});
-  void add_reply(MessageKind kind);
   void begin_reply();
   bool pack_frame(MessageWriter& message);
 
@@ -177,7 +168,7 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
     pack_scene(*stage_, ++generation_, json_, message);
   } else if (owes_series_) {
     owes_series_ = false;
-    pack_series(*stage_->show().frames, message);
+    pack_series(*scene().frames, message);
   } else if (!replies_.empty()) {
     message.begin(replies_.front().kind);
     message.add_text(replies_.front().text);
@@ -194,8 +185,8 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
 
 /// Returns false on failure, and then drops the optional layers.
 bool Session::Implementation::pack_frame(MessageWriter& message) {
-  const FrameView frame{stage_->show(), stage_->source(),  layers_,         stage_->center(),
-                        generation_,    player_.playing(), player_.speed(), player_.loop()};
+  const FrameView frame{scene(),     stage_->source(),  layers_,         stage_->center(),
+                        generation_, player_.playing(), player_.speed(), player_.loop()};
   const auto failure = failure_of([&] { packer_.pack(frame, message); });
   if (!failure) return true;
   id_.reset();
@@ -263,7 +254,7 @@ void Session::Implementation::run(const Command& command, const JsonValue& text)
   if (failure) arguments.fail(failure->message);
   if (!arguments.error().empty()) return fail(arguments.error());
   json_.end_object();
-  if (id_) add_reply(MessageKind::answer);
+  if (id_) replies_.push_back({MessageKind::answer, std::string(json_.text())});
 }
 
 void Session::Implementation::credit(Arguments& arguments) {
@@ -318,55 +309,10 @@ void Session::Implementation::seek(Arguments& arguments) {
 }
 
 void Session::Implementation::layers(Arguments& arguments) {
-  Layers layers = layers_;
-  layers.candidates = arguments.boolean("candidates").value_or(layers.candidates);
-  layers.scene_regions = arguments.boolean("scene_regions").value_or(layers.scene_regions);
-  layers.colliding_vertices = arguments.boolean("colliding_vertices").value_or(layers.colliding_vertices);
-  if (const JsonValue* const octree = arguments.member("octree")) {
-    layers.octree_objects.clear();
-    if (octree->kind != JsonValue::Kind::null) read_octree(*octree, layers, arguments);
-  }
-  if (const JsonValue* const nodes = arguments.member("colliding_nodes")) {
-    layers.colliding_nodes.reset();
-    if (nodes->kind != JsonValue::Kind::null) read_colliding_nodes(*nodes, layers, arguments);
-  }
-  if (!arguments.check()) return;
-  layers_ = std::move(layers);
+  const auto layers = read_layers(layers_, scene(), arguments);
+  if (!layers) return;
+  layers_ = *layers;
   has_news_ = true;
-}
-
-void Session::Implementation::read_octree(const JsonValue& octree, Layers& layers,
-                                          Arguments& arguments) const {
-  if (octree.kind != JsonValue::Kind::object)
-    return arguments.must_be("octree", "null, or {\"objects\": […], \"level\": …}");
-  Arguments inner(octree, "octree");
-  auto objects = inner.required("objects", inner.numbers("objects"));
-  const auto level = inner.required("level", inner.integer("level", -1, 1000));
-  for (const std::uint32_t object : objects) {
-    if (!has_object(object, inner)) break;
-  }
-  if (!inner.check()) return arguments.fail(inner.error());
-  std::sort(objects.begin(), objects.end());
-  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
-  layers.octree_objects = std::move(objects);
-  layers.octree_level.reset();
-  if (level >= 0) layers.octree_level = static_cast<std::uint32_t>(level);
-}
-
-void Session::Implementation::read_colliding_nodes(const JsonValue& nodes, Layers& layers,
-                                                   Arguments& arguments) const {
-  if (nodes.kind != JsonValue::Kind::object)
-    return arguments.must_be("colliding_nodes", "null, or {\"objects\": [a, b], \"level\": …}");
-  Arguments inner(nodes, "colliding_nodes");
-  const auto objects = inner.numbers("objects");
-  const auto level = inner.required("level", inner.integer("level", CollidingNodes::all_levels, 1000));
-  if (objects && objects->size() != 2) inner.must_be("objects", "the numbers of two objects");
-  for (const std::uint32_t object : objects.value_or(std::vector<std::uint32_t>())) {
-    if (!has_object(object, inner)) break;
-  }
-  if (!inner.check()) return arguments.fail(inner.error());
-  layers.colliding_nodes = CollidingNodes{{}, level};
-  if (objects) layers.colliding_nodes->objects = {(*objects)[0], (*objects)[1]};
 }
 
 void Session::Implementation::reset(Arguments& arguments) {
@@ -377,35 +323,8 @@ void Session::Implementation::reset(Arguments& arguments) {
 }
 
 void Session::Implementation::set(Arguments& arguments) {
-  Settings settings = settings_;
-  const auto keep = [](auto& setting, const auto& value) {
-    if (value) setting = static_cast<typename std::remove_reference_t<decltype(setting)>::value_type>(*value);
-  };
-  const auto read = [&]<class Struct, class Value>(const Field<Struct, Value>& field, Value& value) {
-    return is_setting(field) && arguments.option(field, value);
-  };
-  settings.scene.read(read);
-  settings.octree.read(read);
-  if (stage_->simulation()) {
-    keep(settings.objects, arguments.integer("objects", 1, 100'000));
-    keep(settings.integrator, arguments.one_of<Integrator>("integrator"));
-    keep(settings.time_step, arguments.number("time_step", 1e-6, 10));
-  }
-  if (!arguments.check() || !fits_in_memory(settings, arguments)) return;
-  set_stage(settings);
-}
-
-bool Session::Implementation::fits_in_memory(const Settings& settings, Arguments& arguments) const {
-  const double needed = estimated_memory(show_, settings);
-  if (needed <= most_memory_) return true;
-  const auto megabytes = [](double bytes) {
-    return std::to_string(static_cast<std::uint64_t>(bytes / 1e6)) + " MB";
-  };
-  arguments.fail(std::to_string(settings.objects.value_or(show_.objects.size())) +
-                 " objects with such octrees can need " + megabytes(needed) + ", and this session has " +
-                 megabytes(most_memory_) +
-                 "; show fewer objects, or larger leaves, or use supple view with a larger --max-memory");
-  return false;
+  const Settings settings = read_settings(settings_, stage_->simulation() != nullptr, arguments);
+  if (arguments.check() && fits_in_memory(show_, settings, most_memory_, arguments)) set_stage(settings);
 }
 
 /// On failure nothing changes.
@@ -415,19 +334,17 @@ void Session::Implementation::set_stage(const Settings& settings) {
   stage_ = std::move(stage);
   settings_ = settings;
   player_.restart();
-  std::erase_if(layers_.octree_objects,
-                [this](std::uint32_t object) { return object >= stage_->show().objects.size(); });
-  if (auto& nodes = layers_.colliding_nodes;
-      nodes && nodes->objects && std::ranges::max(*nodes->objects) >= stage_->show().objects.size())
-    nodes->objects.reset();
+  keep_objects(layers_, scene().objects.size());
   owes_scene_ = true;
 }
 
 void Session::Implementation::grab(Arguments& arguments) {
-  const auto object = id_of("object", arguments), vertex = id_of("vertex", arguments);
+  if (!is_of_simulation(arguments)) return;
+  const std::uint32_t object = read_object("object", scene(), arguments);
+  const std::uint32_t vertex = arguments.required("vertex", read_vertex(object, scene(), arguments));
   const auto radius = arguments.number("radius", 0, largest);
   if (radius && !(*radius > 0)) arguments.must_be("radius", "more than 0");
-  if (!is_of_simulation(arguments) || !has_vertex(object, vertex, arguments) || !arguments.check()) return;
+  if (!arguments.check()) return;
   if (const auto reason = stage_->simulation()->grab(object, vertex, radius)) return arguments.fail(*reason);
   has_news_ = true;
 }
@@ -446,84 +363,43 @@ void Session::Implementation::release(Arguments& arguments) {
 }
 
 void Session::Implementation::explain(Arguments& arguments) {
-  const auto a = arguments.required("a", arguments.pair("a")),
-             b = arguments.required("b", arguments.pair("b"));
-  if (!has_triangle(a, arguments) || !has_triangle(b, arguments) || !arguments.check()) return;
-  answer_explain(stage_->show(), stage_->source(), stage_->center(), a, b, json_);
+  const ObjectTriangle a = read_object_triangle("a", scene(), arguments),
+                       b = read_object_triangle("b", scene(), arguments);
+  if (arguments.check()) answer_explain(scene(), stage_->source(), stage_->center(), a, b, json_);
 }
 
 void Session::Implementation::measure(Arguments& arguments) {
-  const auto a = id_of("a", arguments), b = id_of("b", arguments);
-  if (!has_object(a, arguments) || !has_object(b, arguments) || !arguments.check()) return;
-  answer_measure(stage_->show(), stage_->source(), stage_->center(), a, b, json_);
+  const std::uint32_t a = read_object("a", scene(), arguments), b = read_object("b", scene(), arguments);
+  if (arguments.check()) answer_measure(scene(), stage_->source(), stage_->center(), a, b, json_);
 }
 
 void Session::Implementation::read(Arguments& arguments) {
-  const auto object = id_of("object", arguments);
-  const auto vertex = arguments.integer("vertex", 0, largest_id);
-  const auto triangle = arguments.integer("triangle", 0, largest_id);
+  const std::uint32_t object = read_object("object", scene(), arguments);
+  const auto vertex = read_vertex(object, scene(), arguments);
+  const auto triangle = read_triangle(object, scene(), arguments);
   if (vertex && triangle) arguments.fail("give a vertex or a triangle, not both");
-  if (!has_object(object, arguments)) return;
-  if (vertex && !has_vertex(object, static_cast<std::uint32_t>(*vertex), arguments)) return;
-  if (triangle && !has_triangle({object, static_cast<std::uint32_t>(*triangle)}, arguments)) return;
   if (!arguments.check()) return;
-  const Source& source = stage_->source();
   if (vertex)
-    answer_read_vertex(source, object, static_cast<std::uint32_t>(*vertex), json_);
+    answer_read_vertex(stage_->source(), object, *vertex, json_);
   else if (triangle)
-    answer_read_triangle(stage_->show(), source, object, static_cast<std::uint32_t>(*triangle), json_);
+    answer_read_triangle(scene(), stage_->source(), object, *triangle, json_);
   else
-    answer_read_object(stage_->show(), source, object, json_);
+    answer_read_object(scene(), stage_->source(), object, json_);
 }
 
 void Session::Implementation::node_pairs(Arguments& arguments) {
-  const auto a = id_of("a", arguments), b = id_of("b", arguments);
-  if (!has_object(a, arguments) || !has_object(b, arguments) || !arguments.check()) return;
-  answer_node_pairs(stage_->source(), a, b, json_);
-}
-
-std::uint32_t Session::Implementation::id_of(const char* name, Arguments& arguments) {
-  return static_cast<std::uint32_t>(arguments.required(name, arguments.integer(name, 0, largest_id)));
+  const std::uint32_t a = read_object("a", scene(), arguments), b = read_object("b", scene(), arguments);
+  if (arguments.check()) answer_node_pairs(stage_->source(), a, b, json_);
 }
 
 bool Session::Implementation::is_of_recording(Arguments& arguments) const {
-  if (stage_->recording()) return true;
-  arguments.fail("this is a simulation; only a recording can do that");
-  return false;
+  if (!stage_->recording()) arguments.fail("this is a simulation; only a recording can do that");
+  return stage_->recording() != nullptr;
 }
 
 bool Session::Implementation::is_of_simulation(Arguments& arguments) const {
-  if (stage_->simulation()) return true;
-  arguments.fail("this is a recording; only a simulation can do that");
-  return false;
-}
-
-bool Session::Implementation::has_object(std::uint32_t object, Arguments& arguments) const {
-  const std::size_t count = stage_->show().objects.size();
-  if (object < count) return true;
-  arguments.fail("there is no object " + std::to_string(object) + "; there are " + std::to_string(count) +
-                 ", numbered from 0");
-  return false;
-}
-
-bool Session::Implementation::has_vertex(std::uint32_t object, std::uint32_t vertex,
-                                         Arguments& arguments) const {
-  if (!has_object(object, arguments)) return false;
-  const std::size_t count = stage_->show().objects[object].mesh.positions.size();
-  if (vertex < count) return true;
-  arguments.fail("object " + std::to_string(object) + " has no vertex " + std::to_string(vertex) +
-                 "; it has " + std::to_string(count) + ", numbered from 0");
-  return false;
-}
-
-bool Session::Implementation::has_triangle(std::array<std::uint32_t, 2> triangle,
-                                           Arguments& arguments) const {
-  if (!has_object(triangle[0], arguments)) return false;
-  const std::size_t count = stage_->show().objects[triangle[0]].mesh.triangles.size();
-  if (triangle[1] < count) return true;
-  arguments.fail("object " + std::to_string(triangle[0]) + " has no triangle " + std::to_string(triangle[1]) +
-                 "; it has " + std::to_string(count) + ", numbered from 0");
-  return false;
+  if (!stage_->simulation()) arguments.fail("this is a recording; only a simulation can do that");
+  return stage_->simulation() != nullptr;
 }
 
 // Replies.
@@ -532,10 +408,6 @@ void Session::Implementation::begin_reply() {
   json_.clear();
   json_.begin_object();
   if (id_) json_.member("id", *id_);
-}
-
-void Session::Implementation::add_reply(MessageKind kind) {
-  replies_.push_back({kind, std::string(json_.text())});
 }
 
 /// `layers` are the layers that frames no longer contain.
@@ -547,7 +419,7 @@ void Session::Implementation::fail(const std::string& message, bool fatal,
   json_.member("fatal", fatal);
   if (!layers.empty()) json_.member("layers", layers);
   json_.end_object();
-  add_reply(MessageKind::failure);
+  replies_.push_back({MessageKind::failure, std::string(json_.text())});
 }
 
 Session::Session(SceneView show, MemoryBudget budget)

@@ -103,6 +103,23 @@ void check_show(const SceneView& show) {
 
 }  // namespace
 
+Settings read_settings(Settings settings, bool of_simulation, Arguments& arguments) {
+  const auto keep = [](auto& setting, const auto& value) {
+    if (value) setting = static_cast<typename std::remove_reference_t<decltype(setting)>::value_type>(*value);
+  };
+  const auto read = [&]<class Struct, class Value>(const Field<Struct, Value>& field, Value& value) {
+    return is_setting(field) && arguments.option(field, value);
+  };
+  settings.scene.read(read);
+  settings.octree.read(read);
+  if (of_simulation) {
+    keep(settings.objects, arguments.integer("objects", 1, 100'000));
+    keep(settings.integrator, arguments.one_of<Integrator>("integrator"));
+    keep(settings.time_step, arguments.number("time_step", 1e-6, 10));
+  }
+  return settings;
+}
+
 double estimated_memory(const SceneView& show, const Settings& settings) {
   // In bytes. Small leaves have as many nodes as triangles.
   constexpr double of_object = 20'000, of_vertex = 400, of_triangle = 400, of_leaf = 4'000;
@@ -115,6 +132,19 @@ double estimated_memory(const SceneView& show, const Settings& settings) {
     bytes += of_object + of_vertex * vertices + (of_triangle + of_leaf / octree.leaf_size) * triangles;
   });
   return bytes;
+}
+
+bool fits_in_memory(const SceneView& show, const Settings& settings, double bytes, Arguments& arguments) {
+  const double needed = estimated_memory(show, settings);
+  if (needed <= bytes) return true;
+  const auto megabytes = [](double amount) {
+    return std::to_string(static_cast<std::uint64_t>(amount / 1e6)) + " MB";
+  };
+  arguments.fail(std::to_string(settings.objects.value_or(show.objects.size())) +
+                 " objects with such octrees can need " + megabytes(needed) + ", and this session has " +
+                 megabytes(bytes) +
+                 "; show fewer objects, or larger leaves, or use supple view with a larger --max-memory");
+  return false;
 }
 
 SceneView arranged(const SceneView& show, const Settings& settings) {

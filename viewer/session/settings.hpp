@@ -5,6 +5,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "arguments.hpp"
 #include "overrides.hpp"
 #include "scene_view.hpp"
 #include "supple/simulation_descriptions.hpp"
@@ -35,6 +36,9 @@ constexpr bool is_setting(const Field<Struct, Value>& field) {
   return !field.is_of_machine;
 }
 
+/// The settings after the command `set`, which changes those that it names.
+Settings read_settings(Settings settings, bool of_simulation, Arguments& arguments);
+
 /// Other methods refuse options of the scene octree.
 constexpr bool uses_scene_octree(BroadPhaseMethod method) {
   return method == BroadPhaseMethod::automatic || method == BroadPhaseMethod::octree;
@@ -43,6 +47,9 @@ constexpr bool uses_scene_octree(BroadPhaseMethod method) {
 /// Estimates the memory in bytes that a session needs for its objects, generously: measured sessions of all
 /// kinds of motion, contacts and octrees need 10 to 90 % of it. Cost: one visit of each object.
 double estimated_memory(const SceneView& show, const Settings& settings);
+
+/// Whether a session has this memory in bytes; if not, this is an error of the arguments.
+bool fits_in_memory(const SceneView& show, const Settings& settings, double bytes, Arguments& arguments);
 
 /// Applies the settings to a scene view. Additional objects are copies, placed in a grid beside the
 /// originals; the border grows with the grid. Throws `Error` with the object and the value when an object is

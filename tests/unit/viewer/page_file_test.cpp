@@ -80,7 +80,7 @@ TEST(PageFile, HoldsShowAndModuleByteForByte) {
   for (const std::size_t size : {0u, 1u, 2u, 3u, 4u, 1000u, 3'000'001u}) {
     const std::vector<std::byte> show = noise(size, 1), module = noise(size / 2, 2);
     const std::string whole = page_with_cargo(page, show, module);
-    EXPECT_EQ(cargo(whole, "supple-show", show.size()), show);
+    EXPECT_EQ(cargo(whole, "supple-scene", show.size()), show);
     EXPECT_EQ(cargo(whole, "supple-wasm", module.size()), module);
     // The data replaces the last such comment: a script may contain an earlier one.
     const std::size_t place = page.rfind("<!--");

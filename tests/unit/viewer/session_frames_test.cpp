@@ -62,7 +62,7 @@ TEST(ViewerFrames, NormalsAreThoseOfTheLibrary) {
   }
 }
 
-TEST(ViewerFrames, GapsPenetrationsAndPatchesAreThoseOfTheLibrary) {
+TEST(ViewerFrames, ProximityPairsPenetrationsAndCurvesAreThoseOfTheLibrary) {
   SceneView show = touching_balls();
   show.simulation.scene.contacts = ContactKinds::proximity | ContactKinds::penetration;
   for (ViewedObject& object : show.objects) {
@@ -78,17 +78,17 @@ TEST(ViewerFrames, GapsPenetrationsAndPatchesAreThoseOfTheLibrary) {
     return Vec3f{row[first], row[first + 1], row[first + 2]};
   };
   const auto pairs = frame.values<Pair>(54);
-  const auto gaps = frame.values<Row>(55);
+  const auto points = frame.values<Row>(55);
   ASSERT_EQ(pairs.size(), expected.proximity_pairs.size());
-  ASSERT_EQ(gaps.size(), pairs.size());
-  EXPECT_GT(gaps.size(), 0u);
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
+  ASSERT_EQ(points.size(), pairs.size());
+  EXPECT_GT(points.size(), 0u);
+  for (std::size_t i = 0; i < points.size(); ++i) {
     const ProximityPair& pair = expected.proximity_pairs[i];
     EXPECT_EQ(pairs[i], (Pair{pair.object_a.index, pair.object_b.index}));
-    EXPECT_EQ(point_of(gaps[i], 0), as_floats(std::array{pair.point_a}, center)[0]);
-    EXPECT_EQ(point_of(gaps[i], 4), as_floats(std::array{pair.point_b}, center)[0]);
-    EXPECT_EQ(gaps[i][3], static_cast<float>(pair.distance));
-    EXPECT_EQ(gaps[i][7], static_cast<float>(pair.distance / 0.04));
+    EXPECT_EQ(point_of(points[i], 0), as_floats(std::array{pair.point_a}, center)[0]);
+    EXPECT_EQ(point_of(points[i], 4), as_floats(std::array{pair.point_b}, center)[0]);
+    EXPECT_EQ(points[i][3], static_cast<float>(pair.distance));
+    EXPECT_EQ(points[i][7], static_cast<float>(pair.distance / 0.04));
   }
   const auto ids = frame.values<std::array<std::uint32_t, 4>>(56);
   const auto depths = frame.values<Row>(57);
@@ -101,17 +101,17 @@ TEST(ViewerFrames, GapsPenetrationsAndPatchesAreThoseOfTheLibrary) {
     EXPECT_EQ(depths[i][3], static_cast<float>(p.depth));
     EXPECT_EQ(point_of(depths[i], 4), as_floats(std::array{p.point}, center)[0]);
   }
-  const auto patches = frame.values<std::array<std::uint32_t, 8>>(58);
+  const auto curves = frame.values<std::array<std::uint32_t, 8>>(58);
   const auto centroids = frame.values<Row>(59);
-  ASSERT_EQ(patches.size(), expected.curves.size());
-  ASSERT_EQ(centroids.size(), patches.size());
-  EXPECT_GT(patches.size(), 0u);
+  ASSERT_EQ(curves.size(), expected.curves.size());
+  ASSERT_EQ(centroids.size(), curves.size());
+  EXPECT_GT(curves.size(), 0u);
   EXPECT_FALSE(expected.enclosed_vertices.empty());
   EXPECT_EQ(frame.values<std::uint32_t>(60),
             std::vector(expected.enclosed_vertices.begin(), expected.enclosed_vertices.end()));
-  for (std::size_t i = 0; i < patches.size(); ++i) {
+  for (std::size_t i = 0; i < curves.size(); ++i) {
     const IntersectionCurve& c = expected.curves[i];
-    EXPECT_EQ(patches[i],
+    EXPECT_EQ(curves[i],
               (std::array{c.a.index, c.b.index, static_cast<std::uint32_t>(c.kind), c.contact_count,
                           c.first_enclosed, c.enclosed_count_a, c.enclosed_count_b, 0u}));
     EXPECT_EQ(point_of(centroids[i], 0), as_floats(std::array{c.centroid}, center)[0]);

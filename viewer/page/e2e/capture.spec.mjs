@@ -306,11 +306,15 @@ async function layersThatFail(stage) {
 
 async function warningsStay(stage) {
   const scene = stage.file("stiff.toml", STIFF(1e7, "random_speed = 0.001"));
-  const { page } = await stage.view(scene);
+  const program = await stage.program(scene);
+  const page = await stage.page();
+  await page.clock.install();
+  await page.goto(program.address);
+  await hasFrame(page);
   const words = "time_step 0.01 is too long for stiff";
   const warning = page.getByRole("log").getByText(words);
   await warning.waitFor();
-  await page.waitForTimeout(10_000);  // longer than notices stay
+  await page.clock.fastForward(10_000);  // longer than notices stay
   assert.ok(await warning.isVisible(), "the warning is gone");
   const isAnew = async (act) => {
     const generation = await page.evaluate(() => supple.model.scene.generation);

@@ -10,7 +10,7 @@ const WALL = `
 [[object]]
 name = "ball"
 model = "icosphere"
-frequency = 2
+frequency = 1
 scale = 0.45
 repeat = [${COLUMNS}, ${ROWS}, 1]
 spacing = [1.2, 1.2, 0]
@@ -18,7 +18,6 @@ spacing = [1.2, 1.2, 0]
 
 async function open(stage) {
   const { page } = await stage.view(stage.file("wall.toml", WALL));
-  await page.emulateMedia({ colorScheme: "dark", reducedMotion: "reduce" });  // the camera moves without animation
   await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
   await page.getByRole("button", { name: "Frame all" }).click();
   await settled(page);
@@ -65,7 +64,7 @@ async function costsLittle(stage) {
     });
   const { calls, triangles } = await drawn();
   assert.ok(calls >= 1 && calls <= 15, `${calls} draw calls`);
-  assert.equal(triangles, COLUMNS * ROWS * 80);
+  assert.equal(triangles, COLUMNS * ROWS * 20);
   const rows = await list(page).getByRole("listitem").count();
   assert.ok(rows > 3 && rows < 100, `${rows} rows have elements`);
   assert.equal(await list(page).getByRole("listitem").first().getAttribute("aria-posinset"), "1");

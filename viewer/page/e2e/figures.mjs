@@ -63,7 +63,7 @@ async function narrowPhaseWith(stage, volume, shapes, file) {
   await page.goto(program.address);
   await stopWhen(page, () => supple.model.frame?.contacts.length > 0);
   await check(page, "Colliding nodes");
-  for (const label of ["Contact points", "Intersecting triangles", "Intersection curves"]) await check(page, label, false);
+  for (const label of ["Contact points", "Intersecting triangles", "Contact segments"]) await check(page, label, false);
   await until(page, (shapes) => supple.counts()[shapes] > 0, shapes);
   for (const name of ["one", "other"]) {
     await page.getByRole("button", { name: new RegExp(`^${name}`) }).click();

@@ -52,9 +52,10 @@ export function runProgram(supple, args, options = {}) {
 const SOFTWARE_FLAGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-gpu-compositing"];
 export const CHROMIUM_FLAGS = ["--no-sandbox", ...(process.env.SUPPLE_GPU ? [] : SOFTWARE_FLAGS)];
 
-/** The path of the browser; undefined when there is none. */
+/** The path of the browser; undefined when there is none. The shell opens a page in a third of the time. */
 export function chromiumPath() {
-  const places = [process.env.SUPPLE_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+  const shell = "/usr/lib/chromium/chromium-headless-shell";
+  const places = [process.env.SUPPLE_CHROMIUM, shell, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
   return places.find((path) => path && existsSync(path));
 }
 
@@ -83,11 +84,15 @@ spacing = [3, 3, 3]
 motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1 }
 `;
 
-/** Everything that one test needs; cleans up after it. */
+/** For pages that are slow because WebGL runs in software: a quarter of the pixels, without antialiasing. */
+export const COARSE = { deviceScaleFactor: 0.5, antialias: false };
+
+/** Everything that one test needs; cleans up after it. `options` are those of its pages. */
 export class Stage {
-  constructor(supple, browser) {
+  constructor(supple, browser, options = {}) {
     this.supple = supple;
     this.browser = browser;
+    this.options = options;
     this.folder = mkdtempSync(join(tmpdir(), "supple-e2e-"));
     this.programs = [];
     this.contexts = [];
@@ -110,10 +115,13 @@ export class Stage {
     return program;
   }
 
-  /** An empty page. Uncaught errors fail the test. */
+  /** An empty page whose camera moves without animation. Uncaught errors fail the test. */
   async page(options = {}) {
-    const context = await this.browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, colorScheme: "dark", ...options });
+    const { antialias = true, ...others } = { ...this.options, ...options };
+    const usual = { viewport: { width: 1280, height: 800 }, acceptDownloads: true, colorScheme: "dark", reducedMotion: "reduce" };
+    const context = await this.browser.newContext({ ...usual, ...others });
     this.contexts.push(context);
+    if (!antialias) await context.addInitScript(drawWithoutAntialiasing);
     const page = await context.newPage();
     page.setDefaultTimeout(30_000);
     page.on("pageerror", (error) => this.errors.push(error.message));
@@ -136,6 +144,13 @@ export class Stage {
   }
 }
 
+function drawWithoutAntialiasing() {
+  const get = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, options) {
+    return get.call(this, kind, { ...options, antialias: false });
+  };
+}
+
 export const hasFrame = (page) => page.waitForFunction(() => (window.supple?.model.framesSeen ?? 0) > 0);
 export const until = (page, condition, argument) => page.waitForFunction(condition, argument);
 export const step = (page) => page.evaluate(() => supple.model.frame.text.step);
@@ -144,22 +159,29 @@ export const camera = (page) => page.evaluate(() => supple.camera());
 
 /** Pauses and waits for the last frame. */
 export async function pause(page) {
-  const button = page.getByRole("button", { name: "Pause" });
-  // A recording may end meanwhile; then there is no such button.
-  if (await button.count()) await button.click({ timeout: 20_000 }).catch(() => {});
+  await page.evaluate(() => supple.client.ask({ do: "pause" }));
   await until(page, () => !supple.model.frame.text.playing);
   await settled(page);
 }
 
-/** Waits until nothing has arrived or been drawn for a while. */
+/**
+ * Waits until the page has drawn a frame that includes the effects of all commands so far, and draws no more.
+ * A command without effect makes the session send such a frame.
+ */
 export async function settled(page) {
-  let last;
-  for (let same = 0; same < 3; ) {
-    const now = await page.evaluate(() => supple.isUpToDate && `${supple.model.framesSeen} ${supple.drawTimes().at(-1)}`);
-    same = now !== false && now === last ? same + 1 : 0;
-    last = now;
-    await page.waitForTimeout(120);
-  }
+  await page.evaluate(async () => {
+    const turns = async (count) => {
+      for (let i = 0; i < count; ++i) await new Promise((done) => requestAnimationFrame(done));
+    };
+    const drawnLast = () => supple.drawTimes().at(-1);
+    await turns(2);  // the page sends some commands before it draws
+    await supple.client.ask(supple.model.request());
+    for (const seen = supple.model.framesSeen; supple.model.framesSeen === seen; ) await turns(1);
+    for (let last; !supple.isUpToDate || drawnLast() !== last; ) {
+      last = drawnLast();
+      await turns(2);
+    }
+  });
 }
 
 /** The content of the canvas, as a text to compare. */

@@ -7,14 +7,16 @@ const nine = join(scenes, "nine.toml");
 
 async function movesPausesAndSteps(stage) {
   const { page } = await stage.view(nine);
-  const before = { at: await page.evaluate(() => supple.positionOf(0, 0)), picture: await picture(page) };
-  await until(page, () => supple.model.frame.text.step > 5);
+  const before = { ...(await page.evaluate(() => ({ step: supple.model.frame.text.step, at: supple.positionOf(0, 0) }))), picture: await picture(page) };
+  await until(page, (before) => supple.model.frame.text.step > before + 5, before.step);
   assert.notDeepEqual(await page.evaluate(() => supple.positionOf(0, 0)), before.at);
   assert.notEqual(await picture(page), before.picture);
 
-  await pause(page);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await until(page, () => !supple.model.frame.text.playing);
   const paused = await step(page);
   await page.waitForTimeout(400);
+  await settled(page);
   assert.equal(await step(page), paused);
   await page.getByRole("button", { name: "Step", exact: true }).click();
   await until(page, (wanted) => supple.model.frame.text.step === wanted, paused + 1);
@@ -57,7 +59,7 @@ async function eachLayerShows(stage) {
   const layers = [
     ["Scene octree", "regions"], ["Object octrees", "boxes"], ["Colliding nodes", "nodeBoxes"], ["Object pairs", "pairs"], ["Candidate pairs", "candidates"],
     ["Intersecting triangles", "triangles"], ["Contact points", "points"], ["Contact normals", "normals"],
-    ["Intersection curves", "curves"], ["Colliding vertices", "vertices"], ["Surfaces", null], ["Wireframe", null],
+    ["Contact segments", "segments"], ["Colliding vertices", "vertices"], ["Surfaces", null], ["Wireframe", null],
   ];
   const boxes = page.getByRole("list", { name: "Layers" });
   for (const [label] of layers) await boxes.getByRole("checkbox", { name: label }).setChecked(label === "Surfaces");
@@ -76,21 +78,21 @@ async function eachLayerShows(stage) {
   }
 }
 
-/** Gaps within the margins, and depths in solid objects, are drawn by layers of their own. */
-async function gapsAndDepthsShow(stage) {
+/** Proximity pairs, and depths in solid objects, are drawn by layers of their own. */
+async function proximityAndDepthsShow(stage) {
   const ball = (x) => `[[object]]\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, 0, 0]\nmargin = 0.05\nsolid = true\n`;
   const scene = stage.file("balls.toml", `[scene]\ncontacts = "proximity,penetration"\n${ball(0)}${ball(1.9)}${ball(3.95)}`);
   const { page } = await stage.view(scene);
-  await until(page, () => supple.model.frame.gaps.length > 4 && supple.model.frame.penetrations.length > 4);
+  await until(page, () => supple.model.frame.proximityPairs.length > 4 && supple.model.frame.penetrations.length > 4);
   await settled(page);
-  const { drawn, gaps, depths } = await page.evaluate(() => ({
-    drawn: supple.counts(), gaps: supple.model.frame.gaps.length / 2, depths: supple.model.frame.penetrations.length / 4,
+  const { drawn, pairs, depths } = await page.evaluate(() => ({
+    drawn: supple.counts(), pairs: supple.model.frame.proximityPairs.length / 2, depths: supple.model.frame.penetrations.length / 4,
   }));
-  assert.equal(drawn.gaps, gaps);
+  assert.equal(drawn.proximity, pairs);
   assert.equal(drawn.depths, depths);
   await page.getByRole("tab", { name: "Contacts" }).click();
-  await page.getByText(`${gaps.toLocaleString("en")} near pairs`).waitFor();
-  for (const [label, count] of [["Gaps", "gaps"], ["Depths", "depths"]]) {
+  await page.getByText(`${pairs.toLocaleString("en")} proximity pairs`).waitFor();
+  for (const [label, count] of [["Proximity pairs", "proximity"], ["Depths", "depths"]]) {
     const before = await picture(page);
     await page.getByRole("checkbox", { name: label, exact: true }).uncheck();
     await until(page, (name) => supple.counts()[name] === 0, count);
@@ -99,32 +101,32 @@ async function gapsAndDepthsShow(stage) {
   }
 }
 
-/** Each patch is drawn, its numbers are listed, and its row flies to it. */
-async function patchesShow(stage) {
+/** Each curve is drawn, its numbers are listed, and its row flies to it. */
+async function curvesShow(stage) {
   const ball = (x, y) => `[[object]]\nname = "at ${x}"\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, ${y}, 0.05]\n`;
   const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "penetration"\n${ball(0, 0)}${ball(1.9, 0.04)}${ball(3.6, -0.07)}`));
-  await until(page, () => supple.model.frame.patches.length > 0);
+  await until(page, () => supple.model.frame.curves.length > 0);
   await settled(page);
   const { drawn, frame } = await page.evaluate(() => {
-    const { patches, patchPoints, enclosedVertices } = supple.model.frame;
-    return { drawn: supple.counts(), frame: { patches: [...patches], points: [...patchPoints], enclosed: enclosedVertices.length } };
+    const { curves, curvePoints, enclosedVertices } = supple.model.frame;
+    return { drawn: supple.counts(), frame: { curves: [...curves], points: [...curvePoints], enclosed: enclosedVertices.length } };
   });
-  assert.equal(drawn.patches, 2);
-  assert.equal(frame.patches.length, 16);
-  assert.ok(drawn.patchFaces > frame.enclosed / 2 && frame.enclosed > 4);
+  assert.equal(drawn.curves, 2);
+  assert.equal(frame.curves.length, 16);
+  assert.ok(drawn.curveFaces > frame.enclosed / 2 && frame.enclosed > 4);
   const before = await picture(page);
-  await page.getByRole("checkbox", { name: "Patches", exact: true }).uncheck();
-  await until(page, () => supple.counts().patches === 0 && supple.counts().patchFaces === 0 && supple.counts().patchArrows === 0);
+  await page.getByRole("checkbox", { name: "Curves", exact: true }).uncheck();
+  await until(page, () => supple.counts().curves === 0 && supple.counts().curveFaces === 0 && supple.counts().curveArrows === 0);
   await settled(page);
-  assert.notEqual(await picture(page), before, "patches show nothing");
+  assert.notEqual(await picture(page), before, "curves show nothing");
 
-  await page.getByRole("tab", { name: "Patches" }).click();
-  const rows = page.getByRole("grid", { name: "Patches" }).getByRole("row");
+  await page.getByRole("tab", { name: "Curves" }).click();
+  const rows = page.getByRole("grid", { name: "Curves" }).getByRole("row");
   await rows.nth(1).waitFor();
   assert.equal(await rows.count(), 2);
   const rounded = (x) => String(Number(x.toPrecision(3)));
-  const { patches, points } = frame;
-  const expected = ["at 1.9", "at 3.6", rounded(points[15]), rounded(points[11]), `${patches[13]} + ${patches[14]}`];
+  const { curves, points } = frame;
+  const expected = ["at 1.9", "at 3.6", rounded(points[15]), rounded(points[11]), `${curves[13]} + ${curves[14]}`];
   assert.deepEqual(await rows.nth(1).getByRole("gridcell").allTextContents(), expected);
   await rows.nth(1).click();
   await settled(page);
@@ -256,6 +258,7 @@ async function picksATriangle(stage) {
 
 async function contactTableFlies(stage) {
   const { page } = await stage.view(nine);
+  await page.emulateMedia({ reducedMotion: "no-preference" });  // the camera flies
   await until(page, () => supple.model.frame.contacts.length > 400);
   await pause(page);
   await page.getByRole("tab", { name: "Contacts" }).click();
@@ -443,8 +446,8 @@ export const tests = [
   ["the first view shows the border", firstViewShowsTheBorder],
   ["resets with a seed, at another speed", resetsWithASeedAndSpeed],
   ["each layer shows", eachLayerShows],
-  ["gaps and depths show", gapsAndDepthsShow],
-  ["patches show and are listed", patchesShow],
+  ["proximity pairs and depths show", proximityAndDepthsShow],
+  ["curves show and are listed", curvesShow],
   ["layers show what the session counts", countsAreTheSessions],
   ["octrees by level, of one object", octreeLevels],
   ["the narrow phase by level", narrowPhaseByLevel],

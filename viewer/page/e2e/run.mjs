@@ -4,14 +4,17 @@
 //
 // Exits with 77, which CTest reports as skipped, when there is no Chromium.
 import { existsSync, mkdirSync, readdirSync } from "node:fs";
+import { cpus } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
-import { CHROMIUM_FLAGS, chromiumPath, Stage } from "./harness.mjs";
+import { CHROMIUM_FLAGS, chromiumPath, COARSE, Stage } from "./harness.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const results = join(here, "results");
 const TEST_MILLISECONDS = 120_000;
+/** Browsers that run tests at the same time. */
+const BROWSERS = Math.min(2, cpus().length);
 
 const [program, ...words] = process.argv.slice(2);
 if (!program || !existsSync(program)) {
@@ -32,7 +35,7 @@ async function loadTests() {
 }
 
 async function runTest({ name, body }, browser) {
-  const stage = new Stage(resolve(program), browser);
+  const stage = new Stage(resolve(program), browser, COARSE);
   let timer;
   const tooLong = new Promise((_, fail) => (timer = setTimeout(() => fail(new Error("it takes too long")), TEST_MILLISECONDS)));
   const begin = Date.now();
@@ -56,13 +59,22 @@ async function runTest({ name, body }, browser) {
   }
 }
 
-const tests = await loadTests();
-const browser = await chromium.launch({ executablePath: executable, headless: true, args: CHROMIUM_FLAGS });
-let failed = 0;
-try {
-  for (const test of tests) if (!(await runTest(test, browser))) failed += 1;
-} finally {
-  await browser.close();
+/** Runs tests one after the other until none is left; returns how many failed. */
+async function runTests(waiting) {
+  const browser = await chromium.launch({ executablePath: executable, headless: true, args: CHROMIUM_FLAGS });
+  let failed = 0;
+  try {
+    for (let test; (test = waiting.shift()); ) if (!(await runTest(test, browser))) failed += 1;
+  } finally {
+    await browser.close();
+  }
+  return failed;
 }
-console.log(`${tests.length - failed} passed, ${failed} failed`);
+
+const begin = Date.now();
+const tests = await loadTests();
+const waiting = [...tests];
+const failures = await Promise.all(Array.from({ length: Math.min(BROWSERS, tests.length) }, () => runTests(waiting)));
+const failed = failures.reduce((sum, count) => sum + count, 0);
+console.log(`${tests.length - failed} passed, ${failed} failed (${((Date.now() - begin) / 1000).toFixed(0)} s)`);
 process.exitCode = failed > 0 || tests.length === 0 ? 1 : 0;

@@ -12,7 +12,7 @@ import { helpSheet } from "./panels/help";
 import { Inspector } from "./panels/inspector";
 import { NodePairs } from "./panels/node_pairs";
 import { Card, Notices } from "./panels/notices";
-import { PatchTable } from "./panels/patch_table";
+import { CurveTable } from "./panels/curve_table";
 import { Player } from "./panels/player";
 import { Plots } from "./panels/plots";
 import { LAYER_ROWS, ScenePanel } from "./panels/scene_panel";
@@ -97,7 +97,7 @@ export class App {
     const tabs = this.tabs({
       Inspect: h("div", {}, inspector.element, new NodePairs(model, this.client).element),
       Contacts: new ContactTable(model, fly).element,
-      Patches: new PatchTable(model, (point, reach) => view.flyTo(point, reach)).element,
+      Curves: new CurveTable(model, (point, reach) => view.flyTo(point, reach)).element,
       Plots: this.plots.element,
       Settings: new Settings(model, this.client).element,
     });

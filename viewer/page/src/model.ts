@@ -29,7 +29,7 @@ export interface Bounds {
 }
 
 export const LAYERS = [
-  "surface", "wireframe", "regions", "octree", "nodes", "pairs", "candidates", "triangles", "points", "normals", "curves", "gaps", "depths", "patches", "vertices",
+  "surface", "wireframe", "regions", "octree", "nodes", "pairs", "candidates", "triangles", "points", "normals", "segments", "proximity", "depths", "curves", "vertices",
 ] as const;
 export type Layer = (typeof LAYERS)[number];
 
@@ -150,7 +150,7 @@ export class Model extends Emitter<ModelEvents> {
 
   layers: Record<Layer, boolean> = {
     surface: true, wireframe: false, regions: false, octree: false, nodes: false, pairs: false, candidates: false,
-    triangles: true, points: true, normals: false, curves: true, gaps: true, depths: true, patches: true, vertices: false,
+    triangles: true, points: true, normals: false, segments: true, proximity: true, depths: true, curves: true, vertices: false,
   };
   octree: { onlySelected: boolean; level: number } = { onlySelected: false, level: -1 };
   nodes: NodeChoice = { objects: null, level: LEAVES };

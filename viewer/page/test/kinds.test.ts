@@ -53,7 +53,7 @@ test("every kind of every record is read", { skip: folder === undefined }, () =>
         kinds.impact.add(read.impacts[i + 6]!);
         kinds.certainty.add(read.impacts[i + 7]!);
       }
-      for (let i = 0; i < read.patches.length; i += 8) kinds.curve.add(read.patches[i + 2]!);
+      for (let i = 0; i < read.curves.length; i += 8) kinds.curve.add(read.curves[i + 2]!);
     }
     assert.ok(contacts > 0);
   }

@@ -80,20 +80,20 @@ test("ids that are not there are refused", () => {
   for (const row of [[0, 0, 0, 1, 1, 0, 6, 0], [0, 0, 0, 1, 1, 0, 0, 2], [0, 0, 0, 1, 0, 4, 3, 0]])
     reject(frameWith(words(36, 8, row), floats(37, 8, new Array<number>(8).fill(0))), /impact/);
   reject(frameWith(words(34, 8, [0, 0, 1, 0, 3, 0, 0, 0])), /kind/);
-  reject(frameWith(words(54, 2, [0, 2]), floats(55, 8, new Array<number>(8).fill(0))), /gap/);
-  reject(frameWith(words(54, 2, [0, 1])), /gaps/);
+  reject(frameWith(words(54, 2, [0, 2]), floats(55, 8, new Array<number>(8).fill(0))), /proximity pair/);
+  reject(frameWith(words(54, 2, [0, 1])), /proximity pairs/);
   reject(frameWith(words(56, 4, [0, 99, 1, 0]), floats(57, 8, new Array<number>(8).fill(0))), /penetrations/);
   reject(frameWith(words(56, 4, [0, 0, 1, 0])), /penetrations/);
-  const patch = (row: number[], enclosed: number[]) =>
+  const curve = (row: number[], enclosed: number[]) =>
     frameWith(words(58, 8, row), floats(59, 8, new Array<number>(8).fill(0)), words(60, 1, enclosed));
-  const taken = readMessage(patch([0, 1, 0, 5, 0, 1, 2, 0], [2, 3, 0]), counts);
+  const taken = readMessage(curve([0, 1, 0, 5, 0, 1, 2, 0], [2, 3, 0]), counts);
   assert.ok(taken.kind === "frame" && taken.enclosedVertices.length === 3);
-  reject(patch([0, 2, 0, 5, 0, 1, 2, 0], [2, 3, 0]), /object/);
-  reject(patch([0, 1, 3, 5, 0, 1, 2, 0], [2, 3, 0]), /kind/);
-  reject(patch([0, 1, 0, 5, 0, 1, 2, 0], [3, 3, 0]), /encloses/);
-  reject(patch([0, 1, 0, 5, 0, 1, 2, 0], [2, 3]), /encloses/);
-  reject(patch([0, 1, 0, 5, 0xffffffff, 1, 2, 0], [2, 3, 0]), /encloses/);
-  reject(frameWith(words(58, 8, [0, 1, 0, 5, 0, 0, 0, 0])), /patches/);
+  reject(curve([0, 2, 0, 5, 0, 1, 2, 0], [2, 3, 0]), /object/);
+  reject(curve([0, 1, 3, 5, 0, 1, 2, 0], [2, 3, 0]), /kind/);
+  reject(curve([0, 1, 0, 5, 0, 1, 2, 0], [3, 3, 0]), /encloses/);
+  reject(curve([0, 1, 0, 5, 0, 1, 2, 0], [2, 3]), /encloses/);
+  reject(curve([0, 1, 0, 5, 0xffffffff, 1, 2, 0], [2, 3, 0]), /encloses/);
+  reject(frameWith(words(58, 8, [0, 1, 0, 5, 0, 0, 0, 0])), /curves/);
   reject(frameWith(floats(32, 3, [0, 0, 0], 0)), /positions/);
   reject(frameWith(floats(32, 3, [0, 0, 0], 5)), /positions/);
   reject(frameWith(floats(40, 8, new Array<number>(8).fill(0), 2)), /octree/);

@@ -44,7 +44,7 @@ export class ContactTable {
       this.listed = [];
       for (let place = 0; place < contactCount(frame); ++place) if (involves(frame, place, selection.object)) this.listed.push(place);
     }
-    const near = frame && frame.gaps.length > 0 ? `${readable(frame.gaps.length / 2)} near pairs · ` : "";
+    const near = frame && frame.proximityPairs.length > 0 ? `${readable(frame.proximityPairs.length / 2)} proximity pairs · ` : "";
     const text = frame ? `${readable(this.count)} contacts · ${near}${readable(frame.objectPairs.length / 2)} object pairs` : "";
     if (this.summary.textContent !== text) this.summary.textContent = text;
     this.window.element.setAttribute("aria-rowcount", String(this.count));

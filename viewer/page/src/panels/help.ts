@@ -15,8 +15,8 @@ const GROUPS: [string, [string, string][]][] = [
   ]],
   ["Layers", [
     ["S X", "surfaces, wireframe"], ["N B K", "scene octree, object octrees, colliding nodes"], ["P C", "object pairs, candidates"],
-    ["I D", "intersecting triangles, contact points"], ["Y U J", "normals, curves, vertices"],
-    ["M E A", "gaps within the margins, depths in solids, patches"],
+    ["I D", "intersecting triangles, contact points"], ["Y U J", "normals, segments, vertices"],
+    ["M E A", "proximity pairs, depths in solids, curves"],
   ]],
   ["Page", [
     ["Shift S", "save a picture"], ["Shift V", "start or stop recording a video"], ["Shift P", "save every frame as a picture of any size"], ["T", "light or dark"], ["H", "hide or show the panels"], ["?", "this list"],

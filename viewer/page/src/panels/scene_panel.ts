@@ -23,15 +23,15 @@ export const LAYER_ROWS: LayerRow[] = [
   { layer: "triangles", label: "Intersecting triangles", key: "I", colour: OKABE_ITO.vermillion, hint: "Triangles that have a contact" },
   { layer: "points", label: "Contact points", key: "D", colour: OKABE_ITO.yellow, hint: "Extreme points of the intersection of two triangles" },
   { layer: "normals", label: "Contact normals", key: "Y", colour: OKABE_ITO.sky, hint: "The normal at each contact point" },
-  { layer: "curves", label: "Intersection curves", key: "U", colour: "ink", hint: "Curves along which surfaces intersect" },
-  { layer: "gaps", label: "Gaps", key: "M", colour: "gaps", hint: "Closest points within the margins, coloured by distance: vermillion up to a quarter of the margins, then orange, green and blue" },
+  { layer: "segments", label: "Contact segments", key: "U", colour: "ink", hint: "Segments and outlines in which pairs of triangles intersect" },
+  { layer: "proximity", label: "Proximity pairs", key: "M", colour: "proximity", hint: "Closest points within the margins, coloured by distance: vermillion up to a quarter of the margins, then orange, green and blue" },
   { layer: "depths", label: "Depths", key: "E", colour: OKABE_ITO.purple, hint: "From each vertex inside a solid object to the closest point of its surface" },
-  { layer: "patches", label: "Patches", key: "A", colour: OKABE_ITO.green, hint: "The triangles at the vertices that each intersection curve encloses, and the way along which the first object leaves the second: an arrow as long as the depth" },
+  { layer: "curves", label: "Curves", key: "A", colour: OKABE_ITO.green, hint: "The triangles at the vertices that each curve of intersections encloses, and an arrow along the normal, as far as the first object must move to pass the second" },
   { layer: "vertices", label: "Colliding vertices", key: "J", colour: OKABE_ITO.purple, hint: "The output of the paper: vertices of colliding octree nodes" },
 ];
 
 function swatch(colour: string): HTMLElement {
-  if (colour === "gaps") return swatchOf([5, 1, 2, 0].map(levelColour));
+  if (colour === "proximity") return swatchOf([5, 1, 2, 0].map(levelColour));
   if (colour !== "levels") return h("span", { class: "swatch", style: colour ? `background:${colour === "ink" ? "var(--ink)" : colour}` : "visibility:hidden" });
   return swatchOf(LEVELS.slice(0, 4));
 }
@@ -118,7 +118,7 @@ export class ScenePanel {
     const { frame, layers } = this.model;
     const of: Partial<Record<Layer, number>> = {
       regions: drawn["regions"]!, octree: drawn["boxes"]! + drawn["balls"]!, nodes: drawn["nodeBoxes"]! + drawn["nodeBalls"]!, candidates: drawn["candidates"]!, triangles: drawn["triangles"]!,
-      points: drawn["points"]!, normals: drawn["normals"]!, curves: drawn["curves"]!, gaps: drawn["gaps"]!, depths: drawn["depths"]!, patches: drawn["patches"]!, vertices: drawn["vertices"]!, pairs: drawn["pairs"]!,
+      points: drawn["points"]!, normals: drawn["normals"]!, segments: drawn["segments"]!, proximity: drawn["proximity"]!, depths: drawn["depths"]!, curves: drawn["curves"]!, vertices: drawn["vertices"]!, pairs: drawn["pairs"]!,
     };
     for (const [layer, element] of this.counts) {
       const count = of[layer];

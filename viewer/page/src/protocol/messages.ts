@@ -84,35 +84,17 @@ export interface SceneMessage {
   triangles: Map<number, Uint32Array>;
 }
 
+type FormOfFrame = Extract<(typeof FORMS)[keyof typeof FORMS], { kinds: readonly ["frame"] }>;
+type Camel<Name> = Name extends `${infer First}_${infer Rest}` ? `${First}${Capitalize<Camel<Rest> & string>}` : Name;
+type ArrayOf<F extends Form> = InstanceType<F["array"]>;
+/** The sections of frames as members, with camelCase names; those of each object are maps. */
+type FrameSections = {
+  [F in FormOfFrame as F["name"] extends `${EventKind}_${"begin" | "end"}` ? never : Camel<F["name"]> & string]:
+    F["perObject"] extends true ? Map<number, ArrayOf<F>> : ArrayOf<F>;
+};
+
 /** Missing sections are empty. Positions are present for objects that moved. */
-export interface FrameMessage {
-  kind: "frame";
-  text: FrameText;
-  positions: Map<number, Float32Array>;
-  objectPairs: Uint32Array;
-  contacts: Uint32Array;
-  contactPoints: Float32Array;
-  impacts: Uint32Array;
-  impactPoints: Float32Array;
-  gaps: Uint32Array;
-  gapPoints: Float32Array;
-  penetrations: Uint32Array;
-  penetrationPoints: Float32Array;
-  patches: Uint32Array;
-  patchPoints: Float32Array;
-  enclosedVertices: Uint32Array;
-  candidates: Uint32Array;
-  sceneRegions: Float32Array;
-  octreeBoxes: Map<number, Float32Array>;
-  octreeSpheres: Map<number, Float32Array>;
-  collidingVertices: Map<number, Uint32Array>;
-  collidingBoxes: Map<number, Float32Array>;
-  collidingSpheres: Map<number, Float32Array>;
-  octreeEdges: Map<number, Float32Array>;
-  collidingEdges: Map<number, Float32Array>;
-  statistics: Float64Array;
-  events: EventData;
-}
+export type FrameMessage = { kind: "frame"; text: FrameText; events: EventData } & FrameSections;
 
 export interface AnswerMessage {
   kind: "answer";
@@ -173,6 +155,16 @@ class Sections {
     if (objects.size === before) fail(`its section ${form.name} occurs twice`);
   }
 
+  ofFrame(): FrameSections {
+    const forms = (Object.values(FORMS) as Form[]).filter(({ kinds }) => kinds[0] === "frame");
+    const members = Object.fromEntries(
+      forms.map(({ name, array, perObject }) => [
+        name.replace(/_(.)/g, (_, letter: string) => letter.toUpperCase()), perObject ? this.each(name) : this.one(name, new array(0)),
+      ]),
+    );
+    return members as unknown as FrameSections;
+  }
+
   one<T extends Data>(name: string, empty: T): T {
     return (this.found.get(name)?.get(NONE) as T | undefined) ?? empty;
   }
@@ -213,7 +205,7 @@ function readSections(buffer: ArrayBuffer, kind: string, count: number, seriesWi
     const start = at + ALIGNMENT;
     at = start + Math.ceil(bytes / ALIGNMENT) * ALIGNMENT;
     if (at > buffer.byteLength) fail("a section reaches past its end");
-    const form = FORMS[tag];
+    const form = (FORMS as Record<number, Form | undefined>)[tag];
     if (!form) continue;  // a section of a later version
     if (!form.kinds.includes(kind)) fail(`a message of kind ${kind} has a section ${form.name}`);
     if (form.perObject !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
@@ -341,52 +333,23 @@ function checkImpacts(impacts: Uint32Array, scene: SceneCounts): void {
   }
 }
 
-function checkPatches({ patches, patchPoints, enclosedVertices }: FrameMessage, scene: SceneCounts): void {
-  if (patchPoints.length !== patches.length) fail("the numbers of patches and of their points differ");
-  for (let i = 0; i < patches.length; i += 8) {
-    if (patches[i + 2]! >= scene.kinds.curve.length) fail("a patch has an unknown kind");
-    let at = patches[i + 4]!;
+function checkCurves({ curves, curvePoints, enclosedVertices }: FrameMessage, scene: SceneCounts): void {
+  if (curvePoints.length !== curves.length) fail("the numbers of curves and of their points differ");
+  for (let i = 0; i < curves.length; i += 8) {
+    if (curves[i + 2]! >= scene.kinds.curve.length) fail("a curve has an unknown kind");
+    let at = curves[i + 4]!;
     for (const side of [0, 1]) {
-      const limit = scene.vertices[patches[i + side]!];
-      if (limit === undefined) fail("a patch names an object that does not exist");
-      const vertices = enclosedVertices.subarray(at, (at += patches[i + 5 + side]!));
-      if (at > enclosedVertices.length || vertices.some((vertex) => vertex >= limit)) fail("a patch encloses a vertex that does not exist");
+      const limit = scene.vertices[curves[i + side]!];
+      if (limit === undefined) fail("a curve names an object that does not exist");
+      const vertices = enclosedVertices.subarray(at, (at += curves[i + 5 + side]!));
+      if (at > enclosedVertices.length || vertices.some((vertex) => vertex >= limit)) fail("a curve encloses a vertex that does not exist");
     }
   }
 }
 
 function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   const text = frameText(sections.json());
-  const words = new Uint32Array(0);
-  const floats = new Float32Array(0);
-  const frame: FrameMessage = {
-    kind: "frame",
-    text,
-    positions: sections.each("positions"),
-    objectPairs: sections.one("object_pairs", words),
-    contacts: sections.one("contacts", words),
-    contactPoints: sections.one("contact_points", floats),
-    impacts: sections.one("impacts", words),
-    impactPoints: sections.one("impact_points", floats),
-    gaps: sections.one("gaps", words),
-    gapPoints: sections.one("gap_points", floats),
-    penetrations: sections.one("penetrations", words),
-    penetrationPoints: sections.one("penetration_points", floats),
-    patches: sections.one("patches", words),
-    patchPoints: sections.one("patch_points", floats),
-    enclosedVertices: sections.one("enclosed_vertices", words),
-    candidates: sections.one("candidates", words),
-    sceneRegions: sections.one("scene_regions", floats),
-    octreeBoxes: sections.each("octree_boxes"),
-    octreeSpheres: sections.each("octree_spheres"),
-    collidingVertices: sections.each("colliding_vertices"),
-    collidingBoxes: sections.each("colliding_boxes"),
-    collidingSpheres: sections.each("colliding_spheres"),
-    octreeEdges: sections.each("octree_edges"),
-    collidingEdges: sections.each("colliding_edges"),
-    statistics: sections.one("statistics", new Float64Array(0)),
-    events: sections.events(""),
-  };
+  const frame: FrameMessage = { kind: "frame", text, events: sections.events(""), ...sections.ofFrame() };
   if (text.generation !== scene.generation) return frame;  // belongs to an earlier scene and will be ignored
   for (const [object, positions] of frame.positions)
     if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it lacks positions of object ${object}`);
@@ -404,12 +367,12 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   checkIds("candidates", frame.candidates, 4, [0, 2], scene.triangles);
   checkImpacts(frame.impacts, scene);
   if (frame.impactPoints.length !== frame.impacts.length) fail("the numbers of impacts and of their points differ");
-  if (frame.gaps.some((object) => object >= scene.vertices.length)) fail("a gap names an object that does not exist");
-  if (frame.gapPoints.length !== 4 * frame.gaps.length) fail("the numbers of gaps and of their points differ");
+  if (frame.proximityPairs.some((object) => object >= scene.vertices.length)) fail("a proximity pair names an object that does not exist");
+  if (frame.proximityPoints.length !== 4 * frame.proximityPairs.length) fail("the numbers of proximity pairs and of their points differ");
   checkIds("penetrations", frame.penetrations, 4, [2, 2], scene.triangles);
   checkIds("penetrations", frame.penetrations, 4, [0, 0], scene.vertices);
   if (frame.penetrationPoints.length !== 2 * frame.penetrations.length) fail("the numbers of penetrations and of their points differ");
-  checkPatches(frame, scene);
+  checkCurves(frame, scene);
   if (frame.statistics.length !== 0 && frame.statistics.length !== scene.statistics) fail("its statistics are not those of the scene");
   return frame;
 }

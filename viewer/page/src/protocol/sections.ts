@@ -11,7 +11,7 @@ export interface Form {
 
 export const KINDS = ["", "scene", "frame", "answer", "failure", "series"] as const;
 
-export const FORMS: Record<number, Form> = {
+export const FORMS = {
   1: { name: "text", array: Uint8Array, width: 1, kinds: ["scene", "frame", "answer", "failure"], perObject: false },
   16: { name: "triangles", array: Uint32Array, width: 3, kinds: ["scene"], perObject: true },
   32: { name: "positions", array: Float32Array, width: 3, kinds: ["frame"], perObject: true },
@@ -36,12 +36,12 @@ export const FORMS: Record<number, Form> = {
   51: { name: "colliding_spheres", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
   52: { name: "octree_edges", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
   53: { name: "colliding_edges", array: Float32Array, width: 8, kinds: ["frame"], perObject: true },
-  54: { name: "gaps", array: Uint32Array, width: 2, kinds: ["frame"], perObject: false },
-  55: { name: "gap_points", array: Float32Array, width: 8, kinds: ["frame"], perObject: false },
+  54: { name: "proximity_pairs", array: Uint32Array, width: 2, kinds: ["frame"], perObject: false },
+  55: { name: "proximity_points", array: Float32Array, width: 8, kinds: ["frame"], perObject: false },
   56: { name: "penetrations", array: Uint32Array, width: 4, kinds: ["frame"], perObject: false },
   57: { name: "penetration_points", array: Float32Array, width: 8, kinds: ["frame"], perObject: false },
-  58: { name: "patches", array: Uint32Array, width: 8, kinds: ["frame"], perObject: false },
-  59: { name: "patch_points", array: Float32Array, width: 8, kinds: ["frame"], perObject: false },
+  58: { name: "curves", array: Uint32Array, width: 8, kinds: ["frame"], perObject: false },
+  59: { name: "curve_points", array: Float32Array, width: 8, kinds: ["frame"], perObject: false },
   60: { name: "enclosed_vertices", array: Uint32Array, width: 1, kinds: ["frame"], perObject: false },
   64: { name: "series", array: Float64Array, width: 0, kinds: ["series"], perObject: false },
   65: { name: "series_contact_begin", array: Uint32Array, width: 3, kinds: ["series"], perObject: false },
@@ -50,4 +50,4 @@ export const FORMS: Record<number, Form> = {
   68: { name: "series_narrow_phase_end", array: Uint32Array, width: 3, kinds: ["series"], perObject: false },
   69: { name: "series_volume_begin", array: Uint32Array, width: 3, kinds: ["series"], perObject: false },
   70: { name: "series_volume_end", array: Uint32Array, width: 3, kinds: ["series"], perObject: false },
-};
+} as const satisfies Record<number, Form>;

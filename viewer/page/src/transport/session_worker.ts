@@ -142,19 +142,19 @@ function turn(): void {
   });
 }
 
-async function open(module: BufferSource, show: Uint8Array): Promise<void> {
+async function open(module: BufferSource, scene: Uint8Array): Promise<void> {
   const compiled = await WebAssembly.compile(module);
   const instance = await WebAssembly.instantiate(compiled, importsOf(compiled));
   exports = instance.exports as unknown as Exports;
   exports._initialize?.();
-  give(show, exports.session_open);
+  give(scene, exports.session_open);
   last = performance.now();
   scope.postMessage({ opened: true });
   turn();
 }
 
 scope.onmessage = (event: MessageEvent) => {
-  const data = event.data as string | { module: ArrayBuffer; show: ArrayBuffer };
+  const data = event.data as string | { module: ArrayBuffer; scene: ArrayBuffer };
   if (typeof data === "string") {
     if (exports)
       attempt(() => {
@@ -164,7 +164,7 @@ scope.onmessage = (event: MessageEvent) => {
       });
     return;
   }
-  open(data.module, new Uint8Array(data.show)).catch((error: unknown) =>
+  open(data.module, new Uint8Array(data.scene)).catch((error: unknown) =>
     attempt(() => {
       throw error;
     }),

@@ -2,11 +2,11 @@ import type { Transport, TransportEvents } from "./transport";
 import SessionWorker from "./session_worker?worker&inline";
 
 const MODULE_ID = "supple-wasm";
-const SHOW_ID = "supple-show";
+const SCENE_ID = "supple-scene";
 
 /** Whether this page contains the library and a scene. */
 export function hasCargo(): boolean {
-  return document.getElementById(MODULE_ID) !== null && document.getElementById(SHOW_ID) !== null;
+  return document.getElementById(MODULE_ID) !== null && document.getElementById(SCENE_ID) !== null;
 }
 
 function bytesOfBase64(text: string): Uint8Array<ArrayBuffer> {
@@ -32,7 +32,7 @@ export function openWorker(events: TransportEvents): Transport {
     events.end("failed", detail);
   };
   const start = async () => {
-    const [module, show] = await Promise.all([unpackCargo(MODULE_ID), unpackCargo(SHOW_ID)]);
+    const [module, scene] = await Promise.all([unpackCargo(MODULE_ID), unpackCargo(SCENE_ID)]);
     if (closed) return;
     worker = new SessionWorker();
     worker.onerror = (event) => end(event.message || "the worker could not be started");
@@ -41,7 +41,7 @@ export function openWorker(events: TransportEvents): Transport {
       else if ("failed" in event.data) end(String(event.data.failed));
       else events.open();
     };
-    worker.postMessage({ module, show }, [module, show]);
+    worker.postMessage({ module, scene }, [module, scene]);
   };
   start().catch((error: unknown) => end(`the contents of this page cannot be unpacked: ${String(error)}`));
   return {

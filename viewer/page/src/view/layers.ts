@@ -1,6 +1,6 @@
 /** Layers over the surfaces, filled from the newest frame while switched on. */
 import * as THREE from "three";
-import { gapLevel, OKABE_ITO } from "../colours";
+import { OKABE_ITO, proximityLevel } from "../colours";
 import { boundsOf, type Model, type ObjectState } from "../model";
 import type { FrameMessage } from "../protocol/messages";
 import { Cells, Dots, Faces, Lines } from "./primitives";
@@ -37,14 +37,14 @@ function writeCentre(into: Float32Array, at: number, object: ObjectState): boole
 }
 
 /** The triangles at the vertices that curves enclose: an object and a triangle each. */
-function enclosedFaces({ patches, enclosedVertices }: FrameMessage, at: number[], objects: ObjectState[]): number[] {
+function enclosedFaces({ curves, enclosedVertices }: FrameMessage, at: number[], objects: ObjectState[]): number[] {
   const enclosed = new Map<number, Uint8Array>();  // 1 for each enclosed vertex
   for (const i of at) {
-    let from = patches[i + 4]!;
+    let from = curves[i + 4]!;
     for (const side of [0, 1]) {
-      const object = patches[i + side]!;
+      const object = curves[i + side]!;
       if (!enclosed.has(object)) enclosed.set(object, new Uint8Array(objects[object]!.vertices));
-      for (const vertex of enclosedVertices.subarray(from, (from += patches[i + 5 + side]!))) enclosed.get(object)![vertex] = 1;
+      for (const vertex of enclosedVertices.subarray(from, (from += curves[i + 5 + side]!))) enclosed.get(object)![vertex] = 1;
     }
   }
   const faces: number[] = [];
@@ -113,12 +113,12 @@ export class Layers {
   readonly triangles = new Faces({ colour: CONTACT, opacity: 0.95, order: 2 });
   readonly points = new Dots({ colour: OKABE_ITO.yellow, order: 6 });
   readonly normals = new Lines({ colour: OKABE_ITO.sky, size: 2, depthTest: false, order: 5 });
-  readonly curves = new Lines({ colour: "#ffffff", size: 2.5, depthTest: false, order: 5 });
-  readonly gaps = new Cells("edges", { colour: "#ffffff", opacity: 1, order: 5 });
+  readonly segments = new Lines({ colour: "#ffffff", size: 2.5, depthTest: false, order: 5 });
+  readonly proximity = new Cells("edges", { colour: "#ffffff", opacity: 1, order: 5 });
   readonly depths = new Lines({ colour: OKABE_ITO.purple, size: 2.5, depthTest: false, order: 5 });
-  readonly patchFaces = new Faces({ colour: OKABE_ITO.green, opacity: 0.5, order: 1 });
-  readonly patchArrows = new Lines({ colour: "#ffffff", size: 3.5, depthTest: false, order: 6 });
-  readonly patches = new Dots({ colour: "#ffffff", order: 7 });
+  readonly curveFaces = new Faces({ colour: OKABE_ITO.green, opacity: 0.5, order: 1 });
+  readonly curveArrows = new Lines({ colour: "#ffffff", size: 3.5, depthTest: false, order: 6 });
+  readonly curves = new Dots({ colour: "#ffffff", order: 7 });
   readonly vertices = new Dots({ colour: OKABE_ITO.purple, order: 6 });
   private readonly marks = new Marks();
 
@@ -130,36 +130,36 @@ export class Layers {
   private all() {
     return [
       this.regions, this.boxes, this.balls, this.edges, this.nodeBoxes, this.nodeBalls, this.nodeEdges, this.pairs, this.candidateFaces,
-      this.candidates, this.triangles, this.points, this.normals, this.curves, this.gaps, this.depths, this.patchFaces, this.patchArrows, this.patches,
+      this.candidates, this.triangles, this.points, this.normals, this.segments, this.proximity, this.depths, this.curveFaces, this.curveArrows, this.curves,
       this.vertices,
     ];
   }
 
   /** The number of elements that each layer draws. */
   counts(): Record<string, number> {
-    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, gaps, depths, patchFaces, patchArrows, patches, vertices } = this;
+    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, segments, proximity, depths, curveFaces, curveArrows, curves, vertices } = this;
     return Object.fromEntries(
-      Object.entries({ regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, curves, gaps, depths, patchFaces, patchArrows, patches, vertices })
+      Object.entries({ regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, segments, proximity, depths, curveFaces, curveArrows, curves, vertices })
         .map(([name, layer]) => [name, layer.count]),
     );
   }
 
   update(): void {
     const { layers } = this.model;
-    for (const layer of [this.points, this.vertices, this.curves, this.normals, this.gaps, this.depths, this.patchFaces, this.patchArrows, this.patches, this.nodeBoxes, this.nodeBalls, this.nodeEdges]) layer.depthTest = !this.model.throughSurfaces;
+    for (const layer of [this.points, this.vertices, this.segments, this.normals, this.proximity, this.depths, this.curveFaces, this.curveArrows, this.curves, this.nodeBoxes, this.nodeBalls, this.nodeEdges]) layer.depthTest = !this.model.throughSurfaces;
     this.points.size = this.model.pointSize + 2;
     this.vertices.size = this.model.pointSize;
-    this.patches.size = this.model.pointSize + 4;
+    this.curves.size = this.model.pointSize + 4;
     this.fillCells();
     this.fillPairs(layers.pairs);
     this.fillCandidates(layers.candidates);
     this.fillTriangles(layers.triangles);
     this.fillPoints(layers.points);
     this.fillNormals(layers.normals);
-    this.fillCurves(layers.curves);
-    this.fillGaps(layers.gaps);
+    this.fillSegments(layers.segments);
+    this.fillProximity(layers.proximity);
     this.fillDepths(layers.depths);
-    this.fillPatches(layers.patches);
+    this.fillCurves(layers.curves);
     this.fillVertices(layers.vertices);
   }
 
@@ -281,11 +281,11 @@ export class Layers {
     });
   }
 
-  private fillCurves(on: boolean): void {
+  private fillSegments(on: boolean): void {
     const { frame } = this.model;
-    if (!on || !frame) return this.curves.fill(0, () => 0);
+    if (!on || !frame) return this.segments.fill(0, () => 0);
     const { contacts, contactPoints } = frame;
-    this.curves.fill(contactPoints.length / 8, (into) => {
+    this.segments.fill(contactPoints.length / 8, (into) => {
       let at = 0;
       for (let i = 0; i < contacts.length; i += 8) {
         const count = contacts[i + 5]!;
@@ -301,18 +301,18 @@ export class Layers {
   }
 
   /** Lines between closest points, coloured by the share of the margins that the distance takes. */
-  private fillGaps(on: boolean): void {
+  private fillProximity(on: boolean): void {
     const { frame } = this.model;
-    if (!on || !frame || frame.gaps.length === 0) return this.gaps.fill([]);
-    const rows = new Float32Array(frame.gapPoints.length);
+    if (!on || !frame || frame.proximityPairs.length === 0) return this.proximity.fill([]);
+    const rows = new Float32Array(frame.proximityPoints.length);
     let at = 0;
-    for (let i = 0; i < frame.gaps.length / 2; ++i) {
-      if (!this.shown(frame.gaps[2 * i]!) || !this.shown(frame.gaps[2 * i + 1]!)) continue;
-      rows.set(frame.gapPoints.subarray(8 * i, 8 * i + 8), at);
-      rows[at + 3] = gapLevel(frame.gapPoints[8 * i + 7]!);
+    for (let i = 0; i < frame.proximityPairs.length / 2; ++i) {
+      if (!this.shown(frame.proximityPairs[2 * i]!) || !this.shown(frame.proximityPairs[2 * i + 1]!)) continue;
+      rows.set(frame.proximityPoints.subarray(8 * i, 8 * i + 8), at);
+      rows[at + 3] = proximityLevel(frame.proximityPoints[8 * i + 7]!);
       at += 8;
     }
-    this.gaps.fill([rows.subarray(0, at)]);
+    this.proximity.fill([rows.subarray(0, at)]);
   }
 
   /** Lines from the vertices inside solid objects to the closest points of their surfaces. */
@@ -330,23 +330,23 @@ export class Layers {
   }
 
   /** The triangles at the vertices that each curve encloses, and an arrow along its normal, as long as its depth. */
-  private fillPatches(on: boolean): void {
+  private fillCurves(on: boolean): void {
     const { frame, objects } = this.model;
     const shown: number[] = [];
-    for (let i = 0; on && frame && i < frame.patches.length; i += 8)
-      if (this.shown(frame.patches[i]!) && this.shown(frame.patches[i + 1]!)) shown.push(i);
+    for (let i = 0; on && frame && i < frame.curves.length; i += 8)
+      if (this.shown(frame.curves[i]!) && this.shown(frame.curves[i + 1]!)) shown.push(i);
     const faces = frame ? enclosedFaces(frame, shown, objects) : [];
-    this.patchFaces.fill(faces.length / 2, (into) => {
+    this.curveFaces.fill(faces.length / 2, (into) => {
       let at = 0;
       for (let i = 0; i < faces.length; i += 2) at = writeTriangle(into, at, objects[faces[i]!]!, faces[i + 1]!);
       return at / 9;
     });
-    this.patches.fill(shown.length, (into) => {
-      shown.forEach((i, k) => into.set(frame!.patchPoints.subarray(i, i + 3), 3 * k));
+    this.curves.fill(shown.length, (into) => {
+      shown.forEach((i, k) => into.set(frame!.curvePoints.subarray(i, i + 3), 3 * k));
       return shown.length;
     });
-    this.patchArrows.fill(ARROW_LINES * shown.length, (into) => {
-      shown.forEach((i, k) => writeArrow(into, 6 * ARROW_LINES * k, frame!.patchPoints.subarray(i, i + 8)));
+    this.curveArrows.fill(ARROW_LINES * shown.length, (into) => {
+      shown.forEach((i, k) => writeArrow(into, 6 * ARROW_LINES * k, frame!.curvePoints.subarray(i, i + 8)));
       return ARROW_LINES * shown.length;
     });
   }

@@ -34,7 +34,7 @@ export class SceneView {
   private readonly contactDot = new Dots({ colour: OKABE_ITO.vermillion, size: 12, depthTest: false, order: 9 });
   private readonly outlines = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Lines({ colour, size: 2.5, depthTest: false, order: 7 }));
   private readonly picked = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Faces({ colour, opacity: 0.95, order: 4 }));
-  private readonly gap = new Lines({ colour: "#ffffff", size: 2, depthTest: false, order: 8 });
+  private readonly distance = new Lines({ colour: "#ffffff", size: 2, depthTest: false, order: 8 });
   private readonly ruler = new Lines({ colour: OKABE_ITO.yellow, size: 2.5, depthTest: false, order: 8 });
   private readonly pull = new Lines({ colour: OKABE_ITO.vermillion, size: 2.5, depthTest: false, order: 8 });
   private dirty = true;
@@ -50,7 +50,7 @@ export class SceneView {
     this.rig = new CameraRig(canvas, () => this.invalidate());
     this.layers = new Layers(model);
     this.scene.add(this.surfaces.group, this.layers.group);
-    for (const extra of [this.selected, this.vertex, this.contactDot, ...this.outlines, ...this.picked, this.gap, this.ruler, this.pull])
+    for (const extra of [this.selected, this.vertex, this.contactDot, ...this.outlines, ...this.picked, this.distance, this.ruler, this.pull])
       this.scene.add(extra.shape);
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
@@ -80,8 +80,8 @@ export class SceneView {
   }
 
   setInk(colour: string): void {
-    for (const layer of [this.layers.curves, this.layers.patchArrows, this.layers.patches]) layer.colour = colour;
-    this.gap.colour = colour;
+    for (const layer of [this.layers.segments, this.layers.curveArrows, this.layers.curves]) layer.colour = colour;
+    this.distance.colour = colour;
     this.invalidate();
   }
 
@@ -245,15 +245,15 @@ export class SceneView {
       return 1;
     });
     const axis = explanation?.axis;
-    const span = axis && explanation.distance ? this.gapSpan(axis, explanation.distance) : null;
-    this.gap.fill(span ? 1 : 0, (into) => {
+    const span = axis && explanation.distance ? this.distanceSpan(axis, explanation.distance) : null;
+    this.distance.fill(span ? 1 : 0, (into) => {
       into.set(span!);
       return 1;
     });
   }
 
   /** A line as long as the distance between two separated triangles. */
-  private gapSpan(axis: number[], distance: number): number[] | null {
+  private distanceSpan(axis: number[], distance: number): number[] | null {
     const { explained, explanation } = this.model;
     const boxes = explanation?.boxes;
     const centres = boxes

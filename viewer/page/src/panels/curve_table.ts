@@ -1,4 +1,4 @@
-/** A table of the patches of the frame: the curves of intersection, and what they enclose. */
+/** A table of the curves of the frame and what they enclose. */
 import type { Model } from "../model";
 import { h, readable } from "./dom";
 import { RowWindow, type Row } from "./row_window";
@@ -6,16 +6,17 @@ import { RowWindow, type Row } from "./row_window";
 const ROW_HEIGHT = 24;
 const rounded = (value: number): string => String(Number(value.toPrecision(3)));
 
-export class PatchTable {
+export class CurveTable {
   readonly element: HTMLElement;
   private readonly summary = h("p", { class: "hint", "aria-live": "off" });
   private readonly window: RowWindow<Row>;
-  /** A row of this frame only: patches have no identity from frame to frame. */
+  /** A row of this step only: curves have no identity from step to step. */
   private chosen = -1;
+  private state = "";
 
   constructor(private readonly model: Model, private readonly flyTo: (point: number[], reach: number) => void) {
     this.window = new RowWindow(
-      { class: "table-view", role: "grid", "aria-label": "Patches", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
+      { class: "table-view", role: "grid", "aria-label": "Curves", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
       h("div", { class: "rows" }), ROW_HEIGHT, () => this.makeRow(),
     );
     const heads: [string, string][] = [
@@ -23,7 +24,7 @@ export class PatchTable {
       ["depth", "How far a must move along the normal"], ["enclosed", "Vertices of a and of b that the curve encloses"],
     ];
     this.element = h(
-      "div", { class: "contacts patches" },
+      "div", { class: "contacts curves" },
       h("div", { class: "table-top" }, this.summary),
       h("div", { class: "row head", "aria-hidden": "true" }, ...heads.map(([name, title]) => h("span", { title }, name))),
       this.window.element,
@@ -33,14 +34,17 @@ export class PatchTable {
   }
 
   private get count(): number {
-    return (this.model.frame?.patches.length ?? 0) / 8;
+    return (this.model.frame?.curves.length ?? 0) / 8;
   }
 
   private update(): void {
-    this.chosen = -1;
+    const { generation, step } = this.model.frame?.text ?? {};
+    const state = `${generation} ${step}`;
+    if (state !== this.state) this.chosen = -1;
+    this.state = state;
     const { scene } = this.model;
     const finds = scene?.contacts.includes("penetration") ?? false;
-    const text = finds ? `${readable(this.count)} ${this.count === 1 ? "patch" : "patches"}` : "Only scenes with the contacts “penetration” have patches (Settings).";
+    const text = finds ? `${readable(this.count)} ${this.count === 1 ? "curve" : "curves"}` : "Only scenes with the contacts “penetration” have curves (Settings).";
     if (this.summary.textContent !== text) this.summary.textContent = text;
     this.window.element.setAttribute("aria-rowcount", String(this.count));
     this.window.setCount(this.count);
@@ -58,9 +62,9 @@ export class PatchTable {
   }
 
   private showRow(row: HTMLElement, cells: HTMLElement[], index: number): void {
-    const { patches, patchPoints } = this.model.frame!;
-    const [a, b, kind, , , countA, countB] = patches.subarray(8 * index, 8 * index + 8);
-    const [depth, area] = [patchPoints[8 * index + 3]!, patchPoints[8 * index + 7]!];
+    const { curves, curvePoints } = this.model.frame!;
+    const [a, b, kind, , , countA, countB] = curves.subarray(8 * index, 8 * index + 8);
+    const [depth, area] = [curvePoints[8 * index + 3]!, curvePoints[8 * index + 7]!];
     const names = [a!, b!].map((object) => this.model.objects[object]!.name);
     const word = this.model.scene!.kinds.curve[kind!]!;
     const texts = [...names, word === "closed" ? rounded(area) : word, rounded(depth), `${countA} + ${countB}`];
@@ -76,7 +80,7 @@ export class PatchTable {
     this.chosen = index;
     this.window.reveal(index);
     this.window.draw();
-    const [x, y, z, depth, , , , area] = this.model.frame!.patchPoints.subarray(8 * index, 8 * index + 8);
+    const [x, y, z, depth, , , , area] = this.model.frame!.curvePoints.subarray(8 * index, 8 * index + 8);
     this.flyTo([x!, y!, z!], Math.max(depth!, Math.sqrt(area!)));
   }
 
