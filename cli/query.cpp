@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -56,6 +57,7 @@ class Run {
 
   const QueryOptions& options_;
   Scene scene_;
+  std::vector<bool> has_triangle_;                    // of finite coordinates, by object
   std::vector<std::optional<ClosestPoint>> closest_;  // of the kind of the options, as the three below
   std::vector<std::optional<RayHit>> hits_;
   std::vector<Containment> contained_;
@@ -73,6 +75,15 @@ SceneOptions scene_options(const QueryOptions& options) {
   return scene;
 }
 
+bool has_finite_triangle(const TriangleMesh& mesh) {
+  return std::ranges::any_of(mesh.triangles, [&](const Triangle& triangle) {
+    return std::ranges::all_of(triangle, [&](std::uint32_t v) {
+      const Vec3d& p = mesh.positions[v];
+      return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    });
+  });
+}
+
 Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(options)) {
   Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
   print_notes(input);
@@ -82,6 +93,7 @@ Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(
   for (InputObject& object : input.objects) {
     options.given_objects.apply_to(object.options);
     scene_.add(object.mesh, object.options);
+    has_triangle_.push_back(has_finite_triangle(object.mesh));
   }
 }
 
@@ -215,17 +227,19 @@ int Run::report(bool was_ended) const {
 void Run::warn_of_objects_without_triangles() const {
   std::vector<std::string> names;
   for (const ObjectId object : scene_.objects()) {
-    if (scene_.triangle_count(object) == 0) names.push_back(name_of(scene_, object));
+    if (!has_triangle_[object.index]) names.push_back(name_of(scene_, object));
   }
   if (names.empty()) return;
   if (names.size() == scene_.objects().size())
     throw Error(
-        fmt::format("{}: no object has a triangle, so there is nothing to query; give surfaces of "
-                    "triangles, not clouds of points",
+        fmt::format("{}: no object has a triangle of finite coordinates, so there is nothing to query; give "
+                    "surfaces of triangles, not lines or clouds of points",
                     options_.inputs.front()));
   if (!options_.quiet)
-    fmt::print(stderr, "supple: warning: {} without triangles, which no query finds; the first: {}\n",
-               counted(names.size(), "object"), names.front());
+    fmt::print(
+        stderr,
+        "supple: warning: {} without triangles of finite coordinates, which no query finds; the first: {}\n",
+        counted(names.size(), "object"), names.front());
 }
 
 int Run::report_wrong_answers() const {
@@ -337,9 +351,11 @@ void Run::print() const {
                                       "  a  b  distance  nearest elements  nearest points\n"};
   const bool are_distances = options_.kind == SceneQuery::distance;
   if (count_ == 0 && count_ < total_) return;
+  if (count_ == 0 && !are_distances) return fmt::print("There are no queries.\n");
   if (count_ == 0)
-    return fmt::print(
-        "{}", are_distances ? "No two objects are within the distance.\n" : "There are no queries.\n");
+    return fmt::print("{}", std::ranges::count(has_triangle_, true) < 2
+                                ? "There are no two objects with triangles, so there is no distance.\n"
+                                : "No two objects are within the distance.\n");
   fmt::print("{}", headings[static_cast<std::size_t>(options_.kind)]);
   for (std::size_t i = 0; i < std::min(count_, most_rows); ++i) print_result(i);
   if (count_ > most_rows)

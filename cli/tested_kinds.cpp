@@ -81,10 +81,7 @@ std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason
     case NothingToTest::no_objects:
       return "there is no object";
     case NothingToTest::no_elements: {
-      const bool has_lines = std::any_of(
-          input_.objects.begin(), input_.objects.end(),
-          [](const auto& object) { return !object.mesh.edges.empty() || !object.mesh.points.empty(); });
-      if (has_lines && !reads_lines(kind))
+      if (leaves_out_lines(kind))
         return "no object has a triangle; lines and points take part in --contacts continuous and proximity";
       return "no object has a triangle; give surfaces of triangles, not clouds of points";
     }
@@ -107,8 +104,9 @@ std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason
     case NothingToTest::one_object:
       return advice_for_one_object(kind);
     case NothingToTest::shared_vertex:
-      return reads_lines(kind) ? "each two elements of the object share a vertex; give more objects"
-                               : "each two triangles of the object share a vertex; give --neighbours exact";
+      if (reads_lines(kind)) return "each two elements of the object share a vertex; give more objects";
+      return has_one_triangle() ? "the only object has one triangle; give more objects"
+                                : "each two triangles of the object share a vertex; give --neighbours exact";
     case NothingToTest::all_static:
       return "all objects are static; let one of them move";
     case NothingToTest::groups:
@@ -119,12 +117,25 @@ std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason
   return "a filter excludes all pairs";
 }
 
+/// Whether an object has lines or points, which this kind does not read.
+bool TestedKinds::leaves_out_lines(ContactKinds kind) const {
+  return !reads_lines(kind) && std::ranges::any_of(input_.objects, [](const InputObject& object) {
+    return !object.mesh.edges.empty() || !object.mesh.points.empty();
+  });
+}
+
+bool TestedKinds::has_one_triangle() const {
+  return input_.objects.size() == 1 && input_.objects.front().mesh.triangles.size() == 1;
+}
+
 std::string TestedKinds::advice_for_one_object(ContactKinds kind) const {
   std::string reason = input_.objects.size() == 1 ? "there is only one object"
                        : kind == ContactKinds::penetration || !reads_lines(kind)
-                           ? "only one object has a triangle"
-                           : "only one object has elements";
-  reason += kind == ContactKinds::penetration ? "; give another one" : "; --self tests it against itself";
+                           ? "only one object has a triangle of finite coordinates"
+                           : "only one object has elements of finite coordinates";
+  const bool needs_another = kind == ContactKinds::penetration || has_one_triangle();
+  reason += needs_another ? "; give another one" : "; --self tests it against itself";
+  if (leaves_out_lines(kind)) reason += "; lines and points take part in --contacts continuous and proximity";
   const TriangleMesh& mesh = input_.objects.front().mesh;
   if (input_.objects.size() != 1) return reason;
   const std::uint64_t parts = compute_topology(mesh).components;

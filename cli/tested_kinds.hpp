@@ -23,6 +23,8 @@ class TestedKinds {
 
  private:
   std::string reason_in_words(ContactKinds kind, NothingToTest reason) const;
+  bool leaves_out_lines(ContactKinds kind) const;
+  bool has_one_triangle() const;
   std::string advice_for_one_object(ContactKinds kind) const;
 
   const Input& input_;

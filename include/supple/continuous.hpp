@@ -78,7 +78,8 @@ struct Impact {
   ImpactCertainty certainty = ImpactCertainty::certain;
   /// Whether they touch at the start, at a distance of at most `min_separation`; `toi` is then 0. Exact.
   bool touching_at_start = false;
-  /// Their distance at the start, to a relative error of 2^-20. Exactly 0 when they share a point there.
+  /// Their distance at the start, to a relative error of 2^-20, at most the largest double. Exactly 0 when
+  /// they share a point there.
   double start_distance = 0;
   /// The points that touch, in barycentric coordinates of the vertices: 1 and three coordinates in the face,
   /// 1 - s, s on edge a and 1 - r, r on edge b, 1 and 1 - s, s on the edge, or 1 and 1 for two points.

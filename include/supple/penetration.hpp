@@ -85,7 +85,9 @@ inline constexpr std::array words<CurveKind>{"closed", "open", "branched"};
 /// ahead. So this move brings part a past part b, and a shorter one does not. It is at most the smallest move
 /// in this direction after which two convex bodies do not overlap. Triangles parallel to the direction have
 /// nothing ahead, and triangles that touch only beside each other are not ahead of each other: sides that
-/// slide past each other do not count.
+/// slide past each other do not count. A direction in which no point of a has one of b ahead counts only
+/// where all are such. Where a body fits into another one so that the curve goes only through its own
+/// vertices, no vertex is behind the curve, and the depth is that of the touching faces: 0.
 ///
 /// `normal` is the direction with the least depth of these: the outward normals of faces of b, and the
 /// reverse of those of a, on which at least half of the curve lies; and the direction of the area, for other

@@ -181,7 +181,7 @@ class Seams(ProgramTest):
             self.assert_one_line_error(done, "no object has a triangle")
         done = self.run_here("query", "inside", "p.txt", "box.obj", "points.ply")
         self.assertEqual(done.status, 0)
-        self.assertIn("1 object without triangles, which no query finds; the first: 1 points", done.error)
+        self.assertIn("1 object without triangles of finite coordinates, which no query finds; the first: 1 points", done.error)
 
 
 if __name__ == "__main__":

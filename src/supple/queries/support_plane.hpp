@@ -40,8 +40,9 @@ struct SupportPlane {
                    high = depth_along(box.max[i] - origin[i], i);
       sum += low < high ? low : high;
     }
-    // Products may underflow, unless the normal is an axis.
-    return axis >= 0 || sum == 0 ? sum : sum - 0x1p-1060;
+    // Products may underflow, also to 0, unless the normal is an axis.
+    const bool is_exact = axis >= 0 || (sum == 0 && box.min == origin && box.max == origin);
+    return is_exact ? sum : sum - 0x1p-1060;
   }
 
  private:

@@ -143,6 +143,21 @@ TEST(CurveDepth, IsZeroWhereBoxesOnlyTouch) {
   }
 }
 
+/// Along the normal of the plate, the faces that it pierces have nothing ahead.
+TEST(CurveDepth, OfAPlateThroughABoxIsAlongThePlate) {
+  const Box box{{0.5, 0.5, 0.5}, {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}}};
+  for (const double thickness : {1e-3, 1e-5, 1e-6, 1e-7, 1e-9}) {
+    SCOPED_TRACE(thickness);
+    const Box plate{{0.5, 0.5, 0.5}, {{{1, 0, 0}, {0, 0.25, 0}, {0, 0, thickness / 2}}}};
+    const auto curves = curves_of(box.mesh(), plate.mesh());
+    ASSERT_EQ(curves.size(), 2u);
+    for (const IntersectionCurve& curve : curves) {
+      EXPECT_NEAR(std::fabs(curve.normal.x), 1, 1e-12);
+      EXPECT_NEAR(curve.depth, 1.5, 1e-6);
+    }
+  }
+}
+
 /// A peg fits exactly between two walls and is too deep in the ground.
 TEST(CurveDepth, LeavesOutSidesThatSlide) {
   // The walls and the ground are one body: an outline in the x-y plane, extruded along z.

@@ -515,5 +515,27 @@ TEST(VerifyQueries, AgreesOnARealMesh) {
   EXPECT_EQ(first_of(scene.verify_distance(a, b, scene.distance(a, b))), "");
 }
 
+/// Products of coordinates that are a few units in the last place above 0 underflow.
+TEST(VerifyQueries, FindNothingWrongAmongTheSmallestNumbers) {
+  RandomNumbers random(5);
+  for (int scene_number = 0; scene_number < 200; ++scene_number) {
+    const double unit = std::ldexp(1, -1074 + scene_number % 4);
+    const auto point = [&] {
+      const auto number = [&] { return unit * random.below(4); };
+      return Vec3d{number(), number(), number()};
+    };
+    TriangleMesh mesh{"small", {}, {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}};
+    for (int i = 0; i < 9; ++i) mesh.positions.push_back(point());
+    Scene scene;
+    scene.add(mesh);
+    scene.add(mesh);
+    std::vector<Vec3d> points;
+    for (int i = 0; i < 20; ++i) points.push_back(point());
+    std::vector<std::optional<ClosestPoint>> found(points.size());
+    scene.closest(points, found);
+    EXPECT_EQ(first_of(scene.verify_closest(points, found)), "") << "scene " << scene_number;
+  }
+}
+
 }  // namespace
 }  // namespace supple

@@ -396,7 +396,8 @@ double CurveFinder::collect_parts(std::span<const std::uint32_t> members) {
   return scale;
 }
 
-/// Chooses the normal with the least depth.
+/// Chooses the normal with the least depth. One along which nothing is ahead does not lead out; it counts
+/// only where all are such.
 void CurveFinder::find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
   list_normals(members);
   const double scale = collect_parts(members);
@@ -417,7 +418,7 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
     curve.normal = unit_or_zero(sum);
     depth = parts_.way_along(curve.normal);
   }
-  curve.depth = restored(depth, scale);
+  curve.depth = depth == CurveParts::nothing_ahead ? 0 : restored(depth, scale);
 }
 
 }  // namespace supple

@@ -98,10 +98,11 @@ double CurveParts::way_along(const Vec3d& normal) {
       for (const Vec3d& p : triangle) box.include({p, p});
       projected_[side].push_back({triangle, box});
     }
-    if (projected_[side].empty()) return 0;
+    if (projected_[side].empty()) return nothing_ahead;
     build(side);
   }
-  double longest = 0;
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  double longest = none;
   const auto push = [&](std::uint32_t a, std::uint32_t b) {
     const Box &of_a = nodes_[0][a].box, &of_b = nodes_[1][b].box;
     const double bound = of_b.max.z - of_a.min.z;
@@ -132,7 +133,7 @@ double CurveParts::way_along(const Vec3d& normal) {
     if (stack_.size() == first + 2 && stack_[first].bound > stack_[first + 1].bound)
       std::swap(stack_[first], stack_[first + 1]);
   }
-  return longest;
+  return longest == none ? nothing_ahead : std::max(longest, 0.0);
 }
 
 /// A binary tree over the projected triangles of a side.

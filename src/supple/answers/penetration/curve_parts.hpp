@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "supple/triangle_intersection.hpp"
@@ -19,9 +20,12 @@ class CurveParts {
   /// Coordinates are about 1 or less. `side` is 0 for a and 1 for b.
   void add(std::size_t side, const TrianglePoints& corners) { triangles_[side].push_back(corners); }
 
+  static constexpr double nothing_ahead = std::numeric_limits<double>::infinity();
+
   /// The longest way along the unit vector from a point of a to a point of b, at least 0: so a passes b by
   /// this move. Triangles that are parallel to the vector, or that overlap only by rounding as seen along it,
-  /// have no such points. O(n log n) for n triangles whose pairs have different ways.
+  /// have no such points. Where there are none at all, `nothing_ahead`. O(n log n) for n triangles whose
+  /// pairs have different ways.
   double way_along(const Vec3d& normal);
 
  private:
