@@ -8,7 +8,7 @@ import { fileURLToPath } from "node:url";
 export const repository = resolve(dirname(fileURLToPath(import.meta.url)), "../../..");
 export const scenes = join(repository, "scenes");
 
-const START_MILLISECONDS = 60_000;
+const START_MILLISECONDS = 120_000;
 
 /** A running `supple view`. */
 export class Program {
@@ -123,7 +123,7 @@ export class Stage {
     this.contexts.push(context);
     if (!antialias) await context.addInitScript(drawWithoutAntialiasing);
     const page = await context.newPage();
-    page.setDefaultTimeout(30_000);
+    page.setDefaultTimeout(120_000);  // ends a test that hangs; a busy machine needs long
     page.on("pageerror", (error) => this.errors.push(error.message));
     return page;
   }

@@ -12,7 +12,7 @@ import { CHROMIUM_FLAGS, chromiumPath, COARSE, Stage } from "./harness.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const results = join(here, "results");
-const TEST_MILLISECONDS = 120_000;
+const TEST_MILLISECONDS = 300_000;
 /** Browsers that run tests at the same time. */
 const BROWSERS = Math.min(2, cpus().length);
 
