@@ -5,6 +5,7 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -286,6 +287,15 @@ Input read_sequence(const std::vector<std::string>& names, const CoordinateConve
   if (is_given(conversion)) check_conversion({first.frame}, conversion);
   input.objects.push_back({std::move(first.mesh), {}, std::move(frames)});
   return input;
+}
+
+std::size_t count_finite_triangles(const TriangleMesh& mesh) {
+  return static_cast<std::size_t>(std::ranges::count_if(mesh.triangles, [&](const Triangle& triangle) {
+    return std::ranges::all_of(triangle, [&](std::uint32_t v) {
+      const Vec3d& p = mesh.positions[v];
+      return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    });
+  }));
 }
 
 }  // namespace supple::cli

@@ -92,6 +92,9 @@ std::string clips_note(const std::filesystem::path& path, const std::vector<std:
 /// Prints the notes of an input to standard error.
 void print_notes(const Input& input);
 
+/// The triangles whose vertices are all finite: others touch nothing.
+std::size_t count_finite_triangles(const TriangleMesh& mesh);
+
 /// Replaces each pattern by the matching files, sorted by the numbers in the names: frame_9 before frame_10.
 /// Throws `Error` when no file matches.
 std::vector<std::filesystem::path> expand_patterns(const std::vector<std::string>& names);

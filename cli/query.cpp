@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -75,15 +74,6 @@ SceneOptions scene_options(const QueryOptions& options) {
   return scene;
 }
 
-bool has_finite_triangle(const TriangleMesh& mesh) {
-  return std::ranges::any_of(mesh.triangles, [&](const Triangle& triangle) {
-    return std::ranges::all_of(triangle, [&](std::uint32_t v) {
-      const Vec3d& p = mesh.positions[v];
-      return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-    });
-  });
-}
-
 Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(options)) {
   Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
   print_notes(input);
@@ -93,7 +83,7 @@ Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(
   for (InputObject& object : input.objects) {
     options.given_objects.apply_to(object.options);
     scene_.add(object.mesh, object.options);
-    has_triangle_.push_back(has_finite_triangle(object.mesh));
+    has_triangle_.push_back(count_finite_triangles(object.mesh) > 0);
   }
 }
 

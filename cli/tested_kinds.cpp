@@ -105,7 +105,7 @@ std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason
       return advice_for_one_object(kind);
     case NothingToTest::shared_vertex:
       if (reads_lines(kind)) return "each two elements of the object share a vertex; give more objects";
-      return has_one_triangle() ? "the only object has one triangle; give more objects"
+      return has_one_triangle() ? "there is only one triangle; give more objects"
                                 : "each two triangles of the object share a vertex; give --neighbours exact";
     case NothingToTest::all_static:
       return "all objects are static; let one of them move";
@@ -124,8 +124,11 @@ bool TestedKinds::leaves_out_lines(ContactKinds kind) const {
   });
 }
 
+/// Whether all objects together have one triangle that can touch something.
 bool TestedKinds::has_one_triangle() const {
-  return input_.objects.size() == 1 && input_.objects.front().mesh.triangles.size() == 1;
+  std::size_t count = 0;
+  for (const InputObject& object : input_.objects) count += count_finite_triangles(object.mesh);
+  return count == 1;
 }
 
 std::string TestedKinds::advice_for_one_object(ContactKinds kind) const {

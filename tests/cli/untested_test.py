@@ -34,6 +34,7 @@ class Untested(ProgramTest):
         self.write("points.ply", POINTS)
         self.write("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         self.write("line.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n")
+        self.write("fan.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n")
 
     def expect(self, *arguments, kind, reason, says):
         """The tables, the JSON and --fail-on-contact say that a kind was not tested."""
@@ -63,13 +64,18 @@ class Untested(ProgramTest):
         self.expect("nan.obj", "nan.obj", kind="intersection", reason="not_finite", says="not finite")
 
     def test_one_object(self):
-        self.expect("a.obj", kind="intersection", reason="one_object", says="othing was tested: there is only one object; --self")
+        self.expect("box.obj", kind="intersection", reason="one_object", says="othing was tested: there is only one object; --self")
+        self.expect("a.obj", kind="intersection", reason="one_object", says="there is only one object; give another one")
+        self.expect("a.obj", "nan.obj", kind="intersection", reason="one_object", says="only one object has a triangle of finite coordinates; give another one")
+        self.expect("a.obj", "line.obj", kind="intersection", reason="one_object", says="give another one; lines and points take part in --contacts continuous and proximity")
         self.expect("crossed.obj", kind="intersection", reason="one_object", says="--self tests it against itself, --parts makes an object of each of its 2 connected parts")
         done = self.run_here("detect", "crossed.obj", "--parts", "--fail-on-contact", "--quiet")
         self.assertEqual((done.status, done.error), (1, ""))
         self.expect("a.obj", "points.ply", kind="intersection", reason="one_object", says="only one object has a triangle")
-        self.expect("a.obj", "--self", kind="intersection", reason="shared_vertex", says="share a vertex; give --neighbours exact")
-        self.expect("--sequence", "a.obj", "far.obj", kind="intersection", reason="one_object", says="--self")
+        self.expect("fan.obj", "--self", kind="intersection", reason="shared_vertex", says="share a vertex; give --neighbours exact")
+        for neighbours in ("skip", "exact"):
+            self.expect("a.obj", "--self", "--neighbours", neighbours, kind="intersection", reason="shared_vertex", says="there is only one triangle; give more objects")
+        self.expect("--sequence", "box.obj", "far_box.obj", kind="intersection", reason="one_object", says="--self")
 
     def test_penetration_without_a_solid(self):
         self.expect("box.obj", "far_box.obj", "--contacts", "penetration", kind="penetration", reason="no_solid", says="enetration could not be tested: no object is solid; --solid")
