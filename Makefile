@@ -41,7 +41,7 @@ endif
 	@echo 'ParaView opens build/cloth.xdmf.'
 	@echo 'Try next: build/release/bin/supple detect scenes/nine.toml --frames 3 --verify --json -'
 
-# The command line and its viewer, without tests and examples. `make program VIEWER=OFF` leaves out the viewer.
+# The command line and its viewer, without tests and examples. VIEWER=OFF leaves out the viewer.
 program: dependencies
 	$(configure_release)
 	cmake --build --preset release -j $(JOBS) --target supple_cli

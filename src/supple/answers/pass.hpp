@@ -31,10 +31,8 @@ struct PassInput {
 };
 
 /// What a worker of any pass has. Passes add to it; `start` prepares for a search.
-template <class FoundType>
+template <class Found>
 struct PassWorker {
-  using Found = FoundType;
-
   std::uint32_t number = 0;
   std::size_t last_task = no_task;
   Traversal traversal;
@@ -52,7 +50,7 @@ struct PassWorker {
 /// tasks, runs them on all workers, and lists the records of all jobs in canonical order. It keeps its memory
 /// between steps.
 ///
-/// `Kind` derives from it and has the test and the record:
+/// `Kind` derives from it, is its friend, and has the test and the record:
 ///   `ObjectPairView view_of_job(job)`     what the traversal reads
 ///   `run_task(task, worker)`              tests candidates and adds to `worker.found`
 /// and, if it calls `drop_excess` and `gather`:
@@ -68,7 +66,7 @@ class Pass {
   using Record = RecordType;
 
   std::span<const ContactGroup> groups() const { return groups_; }
-  /// There are more records than were asked for.
+  /// The search found more records than the caller wants.
   bool is_truncated() const { return is_truncated_; }
   /// For how much of what it finds a worker has memory.
   std::size_t largest_buffer() const {

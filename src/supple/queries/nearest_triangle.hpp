@@ -16,6 +16,7 @@
 #include "contact/intersection/triangle_bounds.hpp"
 #include "core/float_rounding.hpp"
 #include "core/stop_signal.hpp"
+#include "queries/box_faces.hpp"
 #include "queries/feature_name.hpp"
 #include "queries/object_queries.hpp"
 #include "queries/support_plane.hpp"
@@ -132,14 +133,7 @@ class NearestTriangle {
                        found_->distance * (1 + 0x1p-48));
   }
   bool is_behind(const TrianglePoints& corners) const {
-    QueryBox box{corners[0], corners[0]};
-    for (const Vec3d& p : {corners[1], corners[2]}) {
-      for (int axis = 0; axis < 3; ++axis) {
-        box.min[axis] = std::min(box.min[axis], p[axis]);
-        box.max[axis] = std::max(box.max[axis], p[axis]);
-      }
-    }
-    return is_behind(box, depth_of(corners));
+    return is_behind(box_of(corners), depth_of(corners));
   }
   double depth_of(const TrianglePoints& corners) const {
     return std::min(

@@ -15,6 +15,6 @@ export const objectColour = (index: number): string => OBJECTS[index % OBJECTS.l
 
 /** Colours of octree levels and regions. */
 export const LEVELS = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.purple, OKABE_ITO.sky, OKABE_ITO.vermillion];
-/** The level whose colour a proximity pair has: vermillion up to a quarter of the margins, then orange, green and blue. */
+/** The level of the colour of a proximity pair: vermillion up to a quarter of the margins, then orange, green, blue. */
 export const proximityLevel = (share: number): number => (share < 0.25 ? 5 : share < 0.5 ? 1 : share < 0.75 ? 2 : 0);
 export const levelColour = (level: number): string => LEVELS[level % LEVELS.length]!;

@@ -2,7 +2,7 @@
 import { contactCount, findContact, involves, keyAt, kindAt, sidesOf } from "../contacts";
 import type { Model } from "../model";
 import { h, readable } from "./dom";
-import { RowWindow, type Row } from "./row_window";
+import { makeRow, RowWindow, type Row } from "./row_window";
 
 const ROW_HEIGHT = 24;
 
@@ -17,7 +17,7 @@ export class ContactTable {
   constructor(private readonly model: Model, private readonly fly: () => void) {
     this.window = new RowWindow(
       { class: "table-view", role: "grid", "aria-label": "Contacts", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
-      h("div", { class: "rows" }), ROW_HEIGHT, () => this.makeRow(),
+      h("div", { class: "rows" }), ROW_HEIGHT, () => makeRow(5, (index) => this.choose(index), (row, cells, index) => this.showRow(row, cells, index)),
     );
     this.only.addEventListener("change", () => this.update());
     const names = ["object a", "", "object b", "", "kind"].map((name) => h("span", {}, name));
@@ -49,17 +49,6 @@ export class ContactTable {
     if (this.summary.textContent !== text) this.summary.textContent = text;
     this.window.element.setAttribute("aria-rowcount", String(this.count));
     this.window.setCount(this.count);
-  }
-
-  private makeRow(): Row {
-    const cells = Array.from({ length: 5 }, () => h("span", { role: "gridcell" }));
-    let at = 0;
-    const element = h("div", { class: "row", role: "row", onclick: () => this.choose(at) }, ...cells);
-    const show = (index: number) => {
-      at = index;
-      this.showRow(element, cells, index);
-    };
-    return { element, show };
   }
 
   private showRow(row: HTMLElement, cells: HTMLElement[], index: number): void {

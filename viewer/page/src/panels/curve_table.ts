@@ -1,7 +1,7 @@
 /** A table of the curves of the frame and what they enclose. */
 import type { Model } from "../model";
 import { h, readable } from "./dom";
-import { RowWindow, type Row } from "./row_window";
+import { makeRow, RowWindow, type Row } from "./row_window";
 
 const ROW_HEIGHT = 24;
 const rounded = (value: number): string => String(Number(value.toPrecision(3)));
@@ -17,7 +17,7 @@ export class CurveTable {
   constructor(private readonly model: Model, private readonly flyTo: (point: number[], reach: number) => void) {
     this.window = new RowWindow(
       { class: "table-view", role: "grid", "aria-label": "Curves", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
-      h("div", { class: "rows" }), ROW_HEIGHT, () => this.makeRow(),
+      h("div", { class: "rows" }), ROW_HEIGHT, () => makeRow(5, (index) => this.choose(index), (row, cells, index) => this.showRow(row, cells, index)),
     );
     const heads: [string, string][] = [
       ["object a", ""], ["object b", ""], ["area", "Area of a closed curve, or the kind of the curve"],
@@ -48,17 +48,6 @@ export class CurveTable {
     if (this.summary.textContent !== text) this.summary.textContent = text;
     this.window.element.setAttribute("aria-rowcount", String(this.count));
     this.window.setCount(this.count);
-  }
-
-  private makeRow(): Row {
-    const cells = Array.from({ length: 5 }, () => h("span", { role: "gridcell" }));
-    let at = 0;
-    const element = h("div", { class: "row", role: "row", onclick: () => this.choose(at) }, ...cells);
-    const show = (index: number) => {
-      at = index;
-      this.showRow(element, cells, index);
-    };
-    return { element, show };
   }
 
   private showRow(row: HTMLElement, cells: HTMLElement[], index: number): void {

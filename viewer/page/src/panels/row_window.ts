@@ -44,6 +44,20 @@ export interface Row {
   show(index: number): void;
 }
 
+/** A row of a table. A click chooses it; `fill` writes what it shows into its cells. */
+export function makeRow(
+  cellCount: number, choose: (index: number) => void, fill: (row: HTMLElement, cells: HTMLElement[], index: number) => void,
+): Row {
+  const cells = Array.from({ length: cellCount }, () => h("span", { role: "gridcell" }));
+  let at = 0;
+  const element = h("div", { class: "row", role: "row", onclick: () => choose(at) }, ...cells);
+  const show = (index: number) => {
+    at = index;
+    fill(element, cells, index);
+  };
+  return { element, show };
+}
+
 export class RowWindow<Kind extends Row> {
   /** The scrolling box. */
   readonly element: HTMLElement;
