@@ -64,7 +64,7 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   dependences.push_back(
       needs_of_meshes("--neighbours", "--self", [app] { return app->count("--self") > 0; }));
   dependences.push_back(needs_of_meshes("--skip-parting", "--min-separation",
-                                        [&options, app] { return options.scene.impact.min_separation > 0; }));
+                                        [&options] { return options.scene.impact.min_separation > 0; }));
   add_report_options(*app, options, dependences);
   dependences.push_back(
       {add_max_contacts(
