@@ -24,10 +24,14 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     target_compile_definitions(supple_compile_options INTERFACE HWY_WANT_AVX3_DL)
   endif()
 else()
-  # Kernels store vectors in structures, which SVE and RVV do not allow. Highway 1.0 has no vectors of doubles
-  # for WebAssembly. So kernels use its portable vectors, which the compiler turns into the same instructions.
+  # Kernels store vectors in structures, which SVE and RVV do not allow.
   target_compile_definitions(supple_compile_options INTERFACE
-    "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV|HWY_WASM|HWY_WASM_EMU256)")
+    "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+  if(CMAKE_SYSTEM_PROCESSOR STREQUAL "wasm32")
+    # Highway 1.0 has no vectors of doubles for WebAssembly. Its portable vectors take three times as long to
+    # compile as scalar kernels, and are slower there.
+    target_compile_definitions(supple_compile_options INTERFACE HWY_COMPILE_ONLY_SCALAR)
+  endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
     # All these processors have NEON. This definition switches off the choice of instructions at run time.
     target_compile_definitions(supple_compile_options INTERFACE TOOLCHAIN_MISS_SYS_AUXV_H)

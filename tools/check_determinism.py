@@ -29,7 +29,7 @@ x86_64   clang++-19             libstdc++  O2     avx2
 x86_64   clang++-19             libc++     O2     avx2
 aarch64  aarch64-linux-gnu-g++  libstdc++  O1     neon
 riscv64  riscv64-linux-gnu-g++  libstdc++  O1     scalar
-wasm32   clang++-19             libc++     O1     simd128
+wasm32   clang++-19             libc++     O1     scalar
 """
 # How to run the programs of a machine, and options of CMake for it.
 RUNNERS = {"x86_64": [],
