@@ -4,16 +4,16 @@
 #include <string_view>
 #include <vector>
 
-#include "ccd_queries.hpp"
-#include "detect.hpp"
-#include "diff.hpp"
-#include "info.hpp"
-#include "options.hpp"
-#include "query.hpp"
-#include "run_program.hpp"
-#include "simulate.hpp"
+#include "base/run_program.hpp"
+#include "commands/detect.hpp"
+#include "commands/diff.hpp"
+#include "commands/info.hpp"
+#include "commands/simulate.hpp"
+#include "commands/view.hpp"
+#include "options/options.hpp"
+#include "query/ccd_queries.hpp"
+#include "query/query.hpp"
 #include "supple/error.hpp"
-#include "view.hpp"
 
 namespace supple::cli {
 namespace {

@@ -6,15 +6,15 @@
 #include <optional>
 #include <utility>
 
-#include "arity.hpp"
-#include "claims.hpp"
-#include "exit_status.hpp"
-#include "interruption.hpp"
+#include "base/exit_status.hpp"
+#include "base/interruption.hpp"
+#include "base/text.hpp"
 #include "report.hpp"
-#include "scaling.hpp"
-#include "table1.hpp"
-#include "text.hpp"
-#include "volumes.hpp"
+#include "studies/arity.hpp"
+#include "studies/claims.hpp"
+#include "studies/scaling.hpp"
+#include "studies/volumes.hpp"
+#include "table1/table1.hpp"
 
 namespace supple::experiments {
 namespace {

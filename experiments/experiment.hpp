@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "table1_options.hpp"
+#include "table1/table1_options.hpp"
 
 namespace supple::experiments {
 

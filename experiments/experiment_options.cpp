@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "options.hpp"
+#include "options/options.hpp"
 
 namespace supple::experiments {
 namespace {

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "experiment.hpp"
-#include "option_kinds.hpp"
+#include "options/option_kinds.hpp"
 
 namespace supple::experiments {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "text.hpp"
+#include "base/text.hpp"
 
 namespace supple::experiments {
 namespace {

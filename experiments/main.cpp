@@ -1,10 +1,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/run_program.hpp"
 #include "experiment.hpp"
 #include "experiment_options.hpp"
-#include "options.hpp"
-#include "run_program.hpp"
+#include "options/options.hpp"
 
 int main(int argument_count, char** argument_values) {
   using namespace supple;

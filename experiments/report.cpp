@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "exit_status.hpp"
+#include "base/exit_status.hpp"
+#include "base/output_file.hpp"
 #include "machine.hpp"
-#include "output_file.hpp"
 #include "supple/error.hpp"
 
 namespace supple::experiments {

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/text.hpp"
 #include "supple/error.hpp"
-#include "text.hpp"
 
 namespace supple::experiments {
 namespace {

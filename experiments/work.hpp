@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "progress.hpp"
+#include "base/progress.hpp"
 
 namespace supple::experiments {
 

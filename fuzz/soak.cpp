@@ -23,9 +23,9 @@
 #include <variant>
 #include <vector>
 
-#include "build_simulation.hpp"
-#include "frame_recorder.hpp"
-#include "scene_file.hpp"
+#include "commands/build_simulation.hpp"
+#include "commands/frame_recorder.hpp"
+#include "scene_file/scene_file.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/recording.hpp"

@@ -8,8 +8,8 @@ internal header contains its folder ("core/parallel.hpp"). COMPONENTS has the li
 the core. Public headers include only public headers and the standard library. The programs around the library
 include only public headers, files of their own folder and of the one in BUILT_ON, and files of the viewer
 folders in SHARED. Only core/ starts threads, so only core/ may include oneTBB. A chain of includes within a
-folder of src/supple has at most LONGEST_CHAIN files, and a folder at most MOST_FILES files of its own, so that
-a reader can hold it in mind.
+layer, a component or a program has at most LONGEST_CHAIN files, and a folder at most MOST_FILES files of its
+own, so that a reader can hold it in mind.
 """
 
 import collections
@@ -22,12 +22,16 @@ LAYERS = [
     "verify", "inspect", "scene",
 ]
 LONGEST_CHAIN = 5
-# An octree has volumes of its nodes, which are fitted; a search has a pass for each kind, which has parts.
-LONGER_CHAINS = {"octree": 6, "answers": 6}
+# An octree has volumes of its nodes, which are fitted; a search has a pass for each kind, which has parts; a
+# body has a solver with equations, which sum forces over a network; a session reads arguments as settings of a
+# stage for its player; cells of the contest take turns of contestants, whose tasks are workloads.
+LONGER_CHAINS = {"octree": 6, "answers": 6, "simulation/src": 7, "viewer/session": 6, "benchmarks": 7}
 MOST_FILES = 20
 # Libraries around the core, each with the last layer whose internal headers it may include; recording: none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None}
 PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "experiments", "examples", "benchmarks"]
+# Folders of small programs that do not depend on each other.
+LISTS = ["examples"]
 # Folders of the viewer that others may include although they are not public: "session/scene_view.hpp".
 SHARED = {"viewer/server": ["session"], "cli": ["session", "export", "server"], "experiments": ["session"]}
 # Programs that are built on the parts of another one.
@@ -93,11 +97,16 @@ def problem_in_program(root, folder, path, bracket, name):
     return "include only public headers (supple/...) and files of the same folder"
 
 
-def longest_chain(library, layer, chain):
-    """The longest chain of includes within the layer that begins with this chain of files."""
-    own = [name for _, _, name in includes(library / chain[-1])
-           if name.startswith(f"{layer}/") and name not in chain and (library / name).is_file()]
-    return max((longest_chain(library, layer, chain + [name]) for name in own), key=len, default=chain)
+def longest_chain(base, folder, chain):
+    """The longest chain of includes within the folder that begins with this chain of files. Files are named from
+    `base`, or are in the folder of the file that includes them."""
+    own = []
+    for _, bracket, name in includes(chain[-1]):
+        for path in (chain[-1].parent / name, base / name):
+            if bracket == '"' and path.is_file() and path.is_relative_to(folder) and path not in chain:
+                own.append(path)
+                break
+    return max((longest_chain(base, folder, chain + [path]) for path in own), key=len, default=chain)
 
 
 def problems(root):
@@ -111,13 +120,16 @@ def problems(root):
         for number, bracket, name in includes(path):
             if what := problem_in_library(root, layer, bracket, name):
                 yield path, number, name, what
-    for layer in LAYERS:
-        most = LONGER_CHAINS.get(layer, LONGEST_CHAIN)
-        for path in sources(library / layer):
-            chain = longest_chain(library, layer, [path.relative_to(library).as_posix()])
+    own_folders = [f"{name}/src" for name in COMPONENTS] + [name for name in PROGRAMS if name not in LISTS]
+    for name, base in [(layer, library) for layer in LAYERS] + [(name, root / name) for name in own_folders]:
+        most, folder = LONGER_CHAINS.get(name, LONGEST_CHAIN), library / name if base == library else base
+        for path in sources(folder):
+            chain = longest_chain(base, folder, [path])
             if len(chain) > most:
-                yield path, 1, " includes ".join(chain), f"a chain of more than {most} files"
-    for folder, count in sorted(collections.Counter(path.parent for path in sources(library)).items()):
+                names = " includes ".join(p.relative_to(base).as_posix() for p in chain)
+                yield path, 1, names, f"a chain of more than {most} files"
+    in_rooms = [path for folder in [library] + [root / name for name in own_folders] for path in sources(folder)]
+    for folder, count in sorted(collections.Counter(path.parent for path in in_rooms).items()):
         if count > MOST_FILES:
             yield folder, 1, folder.name, f"a folder of {count} files; give it rooms of at most {MOST_FILES}"
     for component, layer in COMPONENTS.items():

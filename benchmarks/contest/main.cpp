@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "contest/cells.hpp"
+#include "contest/cells/cells.hpp"
 
 namespace supple::benchmarks {
 namespace {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "contest/baselines/swept_boxes.hpp"
 #include "contest/contestant.hpp"
-#include "contest/swept_boxes.hpp"
 #include "supple/scene.hpp"
 
 namespace supple::benchmarks {

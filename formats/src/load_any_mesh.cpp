@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "animation/model_readers.hpp"
 #include "file_kinds.hpp"
 #include "mesh/files/file_access.hpp"
-#include "model_readers.hpp"
 #include "own_formats.hpp"
 #include "supple/formats.hpp"
 

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "animation/transform.hpp"
 #include "core/error.hpp"
 #include "mesh/files/number_text.hpp"
 #include "mesh/files/quotes.hpp"
 #include "readers.hpp"
-#include "transform.hpp"
 #include "zip_reader.hpp"
 
 namespace supple {

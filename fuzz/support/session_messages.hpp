@@ -8,7 +8,7 @@
 #include <cstring>
 #include <span>
 
-#include "message.hpp"
+#include "messages/message.hpp"
 #include "session.hpp"
 #include "support/check.hpp"
 

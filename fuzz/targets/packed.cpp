@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "packed_scene.hpp"
+#include "packed/packed_scene.hpp"
 #include "session.hpp"
 #include "supple/error.hpp"
 #include "support/check.hpp"

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "point_file.hpp"
-#include "query_file.hpp"
-#include "rational.hpp"
+#include "query/point_file.hpp"
+#include "query/query_file.hpp"
+#include "query/rational.hpp"
 #include "supple/error.hpp"
 #include "support/byte_reader.hpp"
 #include "support/check.hpp"

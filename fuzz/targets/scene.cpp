@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "scene_file.hpp"
+#include "scene_file/scene_file.hpp"
 #include "supple/error.hpp"
 #include "support/byte_reader.hpp"
 #include "support/check.hpp"

@@ -326,6 +326,8 @@ struct ResultList {
   const char* value = "";
   Role role{};
   const char* unit = "";
+  /// The kind of contacts whose answer is this list, one row for each; none for other lists.
+  ContactKinds answers = ContactKinds::none;
 };
 
 /// Calls `visitor(list, member)` for each list with records of its own; `member(result)` is the list of a
@@ -338,21 +340,32 @@ constexpr void for_each_list(Visitor&& visitor) {
                              "pairs of the broad phase: their bounding volumes overlap"},
       [](auto& result) -> auto& { return result.object_pairs; });
   list(
-      ResultList<Contact>{"contacts", "contact", "two triangles that intersect, decided exactly"},
+      ResultList<Contact>{.name = "contacts",
+                          .item = "contact",
+                          .doc = "two triangles that intersect, decided exactly",
+                          .answers = ContactKinds::intersection},
       [](auto& result) -> auto& { return result.contacts; });
   list(
       ResultList<ContactPoint>{"contact_points", "contact point", "an extreme point of an intersection"},
       [](auto& result) -> auto& { return result.contact_points; });
   list(
-      ResultList<ContinuousContact>{"continuous_contacts", "continuous contact",
-                                    "two elements that touch on their paths from the last frame to this one"},
+      ResultList<ContinuousContact>{
+          .name = "continuous_contacts",
+          .item = "continuous contact",
+          .doc = "two elements that touch on their paths from the last frame to this one",
+          .answers = ContactKinds::continuous},
       [](auto& result) -> auto& { return result.continuous_contacts; });
   list(
-      ResultList<ProximityPair>{"proximity_pairs", "proximity pair",
-                                "two features, or elements, within the margins of their objects"},
+      ResultList<ProximityPair>{.name = "proximity_pairs",
+                                .item = "proximity pair",
+                                .doc = "two features, or elements, within the margins of their objects",
+                                .answers = ContactKinds::proximity},
       [](auto& result) -> auto& { return result.proximity_pairs; });
   list(
-      ResultList<Penetration>{"penetrations", "penetration", "a vertex of object a inside object b"},
+      ResultList<Penetration>{.name = "penetrations",
+                              .item = "penetration",
+                              .doc = "a vertex of object a inside object b",
+                              .answers = ContactKinds::penetration},
       [](auto& result) -> auto& { return result.penetrations; });
   list(
       ResultList<std::uint32_t>{"vertices_on_surface", "vertex on surface",

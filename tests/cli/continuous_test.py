@@ -186,10 +186,10 @@ class Tables(ContinuousTest):
         done = self.run_here("detect", "scene.toml", *CONTINUOUS, "--csv", "-")
         self.assertEqual((done.status, done.error), (0, ""))
         header, *rows = done.out.splitlines()
-        self.assertEqual(header, "frame,a,b,kind,a0,a1,b0,b1,toi,certainty")
+        self.assertEqual(header, "frame,a,b,kind,element_a0,element_a1,element_b0,element_b1,certainty,touching_at_start,toi,start_distance")
         columns = [row.split(",") for row in rows]
-        expected = ["1,0,1,fv,0,,0,,0.5,certain", "1,2,3,ee,0,1,0,1,0.25,certain"]
-        self.assertEqual([",".join([*c[:8], str(round(float(c[8]) * 1024) / 1024), c[9]]) for c in columns], expected)
+        expected = ["1,0,1,fv,0,,0,,certain,false,0.5", "1,2,3,ee,0,1,0,1,certain,false,0.25"]
+        self.assertEqual([",".join([*c[:10], str(round(float(c[10]) * 1024) / 1024)]) for c in columns], expected)
 
     def test_text(self):
         self.fall(FLOOR, SPIKE, 4, 0, -2)

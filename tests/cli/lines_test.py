@@ -99,6 +99,8 @@ class Lines(ProgramTest):
             self.assertEqual(frame["continuous"], before["continuous"])
             self.assertEqual(frame["proximity"], before["proximity"])
             self.assertEqual(frame["continuous_verify" if "continuous_verify" in frame else "verify"]["differences"], [])
+        self.assertIn("elements per leaf", self.run_here("info", "rod.obj").out)
+        self.assertIn("triangles per leaf", self.run_here("info", "floor.obj").out)
         (mesh,) = [m for m in json.loads(self.run_here("info", "run.h5", "--json", "-").out)["objects"] if m["name"] == "rod"]
         self.assertEqual((mesh["lines"], mesh["points"]), (3, 1))
 

@@ -76,7 +76,7 @@ class Penetration(ProgramTest):
 
     def test_csv_and_tables(self):
         rows = self.run_here("detect", "a.obj", "b.obj", *PENETRATION, "--csv", "-").out.splitlines()
-        self.assertEqual(rows[0], "frame,a,b,vertex,triangle,depth")
+        self.assertEqual(rows[0], "frame,a,b,vertex,triangle,feature,depth")
         self.assertEqual([row.split(",")[:4] for row in rows[1:]], [["0", "0", "1", "7"], ["0", "1", "0", "0"]])
         done = self.run_here("detect", "a.obj", "b.obj", *PENETRATION, "--fail-on-contact", "--verify")
         self.assertEqual(done.status, 1)

@@ -62,7 +62,7 @@ class Proximity(ProgramTest):
 
     def test_csv_and_tables(self):
         rows = self.run_here("detect", "low.obj", "high.obj", *NEAR, "--csv", "-").out.splitlines()
-        self.assertEqual(rows[:2], ["frame,a,b,kind,a0,a1,b0,b1,distance", "0,0,1,vv,0,,0,,0.25"])
+        self.assertEqual(rows[:2], ["frame,a,b,kind_a,kind_b,element_a0,element_a1,element_b0,element_b1,feature_a,feature_b,distance", "0,0,1,vertex,vertex,0,,0,,v0,v0,0.25"])
         done = self.run_here("detect", "low.obj", "high.obj", *NEAR, "--fail-on-contact", "--verify")
         self.assertEqual(done.status, 1)
         self.assertIn("feature pairs", done.out)

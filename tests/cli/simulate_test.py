@@ -137,7 +137,7 @@ class Steps(SimulateTest):
         done = self.run_here("simulate", "balls.toml", "--frames", "51", "--csv", "-")
         self.assertEqual((done.status, done.error), (0, ""))
         rows = done.out.splitlines()
-        self.assertEqual(rows[0], "frame,a,b,i,j")
+        self.assertEqual(rows[0], "frame,a,b,triangle_a,triangle_b,kind")
         self.assertGreater(len(rows), 1)
 
 
@@ -217,7 +217,8 @@ class Recorded(SimulateTest):
             process.send_signal(number)
             out, error = process.communicate()
             self.assertEqual(process.returncode, status, error)
-            step, frames = re.search(r"^supple: interrupted after step (\d+) of 999999999, .* run\.h5 has ([\d,]+) frames\n$", error).groups()
+            step, frames = re.search(r"^supple: interrupted after ([\d,]+) of 999,999,999 steps, .* run\.h5 has ([\d,]+) frames\n$", error).groups()
+            step = step.replace(",", "")
             self.assertEqual(int(frames.replace(",", "")), int(step) + 1)
             self.assertEqual(self.frame_count(), int(step) + 1)
             self.assertEqual(len(json.loads((self.folder / "run.json").read_text())["frames"]), int(step) + 1)

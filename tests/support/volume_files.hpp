@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "element_mesh.hpp"
+#include "elements/element_mesh.hpp"
 #include "mesh/files/number_text.hpp"
 #include "supple/mesh.hpp"
 #include "support/random.hpp"

@@ -62,6 +62,16 @@ class CheckIncludeOrder(unittest.TestCase):
         del chain["src/supple/broad_phase/a.hpp"]
         self.assertEqual(run_on({**GOOD, **chain, "src/supple/broad_phase/f.hpp": ""}), (0, ""))
 
+    def test_long_chain_of_a_program_or_a_component(self):
+        for folder in ("cli", "viewer/server", "formats/src"):
+            files = [f"room/{name}.hpp" for name in "abcdef"]
+            chain = {f"{folder}/{a}": f'#include "{b}"\n' for a, b in zip(files, files[1:])}
+            code, error = run_on({**GOOD, **chain, f"{folder}/room/f.hpp": ""})
+            self.assertEqual(code, 1)
+            self.assertIn(f"{folder}/room/a.hpp:1: room/a.hpp includes room/b.hpp includes", error)
+            del chain[f"{folder}/room/a.hpp"]
+            self.assertEqual(run_on({**GOOD, **chain, f"{folder}/room/f.hpp": ""}), (0, ""))
+
     def test_crowded_folder(self):
         files = {f"src/supple/mesh/polygon/{i}.cpp": "" for i in range(21)}
         code, error = run_on({**GOOD, **files})
@@ -69,6 +79,10 @@ class CheckIncludeOrder(unittest.TestCase):
         self.assertIn("src/supple/mesh/polygon:1: polygon: a folder of 21 files", error)
         del files["src/supple/mesh/polygon/0.cpp"]
         self.assertEqual(run_on({**GOOD, **files}), (0, ""))
+        for folder in ("cli", "viewer/session", "simulation/src/motion"):
+            code, error = run_on({**GOOD, **{f"{folder}/room/{i}.cpp": "" for i in range(21)}})
+            self.assertEqual(code, 1)
+            self.assertIn(f"{folder}/room:1: room: a folder of 21 files", error)
 
     def expect(self, name, text, message):
         code, error = run_on({**GOOD, name: text})

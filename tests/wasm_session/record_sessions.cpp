@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "packed_scene.hpp"
+#include "packed/packed_scene.hpp"
 #include "session.hpp"
 #include "supple/models.hpp"
 #include "support/hard_scenes.hpp"

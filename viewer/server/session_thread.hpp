@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "session/message.hpp"
+#include "session/messages/message.hpp"
 #include "session/session.hpp"
 
 namespace supple::viewer {

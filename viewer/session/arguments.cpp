@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "json_text.hpp"
+#include "messages/json_text.hpp"
 
 namespace supple::viewer {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "json_value.hpp"
+#include "messages/json_value.hpp"
 #include "supple/description.hpp"
 #include "supple/types.hpp"
 

@@ -9,19 +9,19 @@
 #include <utility>
 #include <vector>
 
-#include "answers.hpp"
 #include "arguments.hpp"
 #include "failure.hpp"
-#include "frame_message.hpp"
-#include "json_text.hpp"
-#include "json_value.hpp"
 #include "layers.hpp"
-#include "message.hpp"
+#include "messages/answers.hpp"
+#include "messages/frame_message.hpp"
+#include "messages/json_text.hpp"
+#include "messages/json_value.hpp"
+#include "messages/message.hpp"
+#include "messages/scene_message.hpp"
 #include "object_arguments.hpp"
-#include "player.hpp"
-#include "scene_message.hpp"
 #include "settings.hpp"
-#include "stage.hpp"
+#include "sources/player.hpp"
+#include "sources/stage.hpp"
 
 namespace supple::viewer {
 namespace {

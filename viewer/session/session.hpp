@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "message.hpp"
+#include "messages/message.hpp"
 #include "scene_view.hpp"
 
 namespace supple::viewer {

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "extent.hpp"
 #include "failure.hpp"
+#include "sources/extent.hpp"
 #include "supple/mesh.hpp"
 
 namespace supple::viewer {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "message.hpp"
-#include "packed_scene.hpp"
+#include "messages/message.hpp"
+#include "packed/packed_scene.hpp"
 #include "page.hpp"
 #include "session.hpp"
 #include "supple/error.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "motion/spring_network.hpp"
+#include "motion/network/spring_network.hpp"
 
 namespace supple {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geometry/vector.hpp"
-#include "motion/spring_network.hpp"
+#include "motion/network/spring_network.hpp"
 #include "supple/types.hpp"
 
 namespace supple {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "motion/backward_euler.hpp"
 #include "motion/deformation_limit.hpp"
 #include "motion/force_sum.hpp"
-#include "motion/spring_network.hpp"
+#include "motion/implicit/backward_euler.hpp"
+#include "motion/network/spring_network.hpp"
 #include "motion/vertex_kind.hpp"
 #include "supple/motion.hpp"
 

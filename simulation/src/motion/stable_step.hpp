@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "motion/spring_network.hpp"
+#include "motion/network/spring_network.hpp"
 #include "motion/vertex_kind.hpp"
 #include "supple/motion.hpp"
 

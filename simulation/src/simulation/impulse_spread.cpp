@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/spring_network.hpp"
+#include "motion/network/spring_network.hpp"
 
 namespace supple {
 namespace {

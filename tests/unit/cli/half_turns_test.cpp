@@ -1,4 +1,4 @@
-#include "half_turns.hpp"
+#include "inputs/half_turns.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "experiments/colliding_children.hpp"
+#include "experiments/studies/colliding_children.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/arity.hpp"
-#include "experiments/box_field.hpp"
-#include "experiments/paper_table.hpp"
-#include "experiments/scaling.hpp"
-#include "experiments/shape_pair.hpp"
+#include "experiments/studies/arity.hpp"
+#include "experiments/studies/box_field.hpp"
+#include "experiments/studies/scaling.hpp"
+#include "experiments/studies/shape_pair.hpp"
+#include "experiments/table1/paper_table.hpp"
 #include "supple/models.hpp"
 
 namespace supple::experiments {

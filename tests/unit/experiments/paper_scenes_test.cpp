@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "scene_file.hpp"
+#include "scene_file/scene_file.hpp"
 #include "supple/simulation.hpp"
 
 namespace supple {

@@ -1,4 +1,4 @@
-#include "experiments/table1.hpp"
+#include "experiments/table1/table1.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/table1_claims.hpp"
-#include "experiments/table1_runs.hpp"
-#include "experiments/table1_scenes.hpp"
+#include "experiments/table1/table1_claims.hpp"
+#include "experiments/table1/table1_runs.hpp"
+#include "experiments/table1/table1_scenes.hpp"
 #include "supple/error.hpp"
 
 namespace supple::experiments {

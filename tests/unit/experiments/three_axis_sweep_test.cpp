@@ -1,4 +1,4 @@
-#include "experiments/three_axis_sweep.hpp"
+#include "experiments/studies/three_axis_sweep.hpp"
 
 #include <gtest/gtest.h>
 

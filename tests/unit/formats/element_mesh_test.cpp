@@ -1,4 +1,4 @@
-#include "element_mesh.hpp"
+#include "elements/element_mesh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Tests the linear systems of backward Euler and their solvers.
 
-#include "motion/backward_euler.hpp"
+#include "motion/implicit/backward_euler.hpp"
 
 #include <gtest/gtest.h>
 

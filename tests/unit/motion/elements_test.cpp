@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "motion/element_forces.hpp"
-#include "motion/spring_network.hpp"
+#include "motion/network/spring_network.hpp"
 #include "supple/topology.hpp"
 #include "support/bodies.hpp"
 

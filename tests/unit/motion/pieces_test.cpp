@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "motion/mesh_pieces.hpp"
+#include "motion/network/mesh_pieces.hpp"
 #include "supple/models.hpp"
 #include "supple/motion.hpp"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "motion/closed_parts.hpp"
+#include "motion/network/closed_parts.hpp"
 #include "supple/error.hpp"
 #include "support/bodies.hpp"
 

@@ -1,4 +1,4 @@
-#include "session/packed_scene.hpp"
+#include "session/packed/packed_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "../../support/soups.hpp"
 #include "../../support/viewer_page.hpp"
-#include "session/described_json.hpp"
-#include "session/json_text.hpp"
+#include "session/messages/described_json.hpp"
+#include "session/messages/json_text.hpp"
 #include "session/settings.hpp"
 #include "unit/descriptions/other_values.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../../support/viewer_page.hpp"
-#include "session/packed_scene.hpp"
+#include "session/packed/packed_scene.hpp"
 
 namespace supple::viewer {
 namespace {

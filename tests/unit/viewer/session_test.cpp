@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../../support/viewer_page.hpp"
-#include "session/long_steps.hpp"
+#include "session/messages/long_steps.hpp"
 
 namespace supple::viewer {
 namespace {

@@ -1,4 +1,4 @@
-// `make docs` writes this file from viewer/session/sections.hpp.
+// `make docs` writes this file from viewer/session/messages/sections.hpp.
 
 export interface Form {
   name: string;

@@ -1,0 +1,137 @@
+#include "base/interruption.hpp"
+
+#include <fmt/core.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+#include "base/exit_status.hpp"
+
+namespace supple::cli {
+namespace {
+
+// Atomics without locks are safe in signal handlers.
+std::atomic<int> received = 0;
+std::atomic<int> event = -1;  // wakes the thread that watches
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void wake() {
+  const std::uint64_t one = 1;
+  if (event >= 0) [[maybe_unused]]
+    const ssize_t written = write(event, &one, sizeof one);
+}
+
+extern "C" void remember(int signal) {
+  const int error = errno;
+  received = signal;
+  wake();
+  errno = error;
+}
+
+/// Waits for an event, or until the time. Returns whether there was an event.
+bool wait_for_event(std::optional<std::chrono::steady_clock::time_point> until) {
+  using namespace std::chrono;
+  int milliseconds = -1;
+  if (until) {
+    const auto left = duration_cast<duration<double, std::milli>>(*until - steady_clock::now()).count();
+    milliseconds = static_cast<int>(std::clamp(left + 1, 0.0, 1e9));
+  }
+  pollfd waiting{event, POLLIN, 0};
+  if (poll(&waiting, 1, milliseconds) <= 0) return false;
+  std::uint64_t count = 0;
+  return read(event, &count, sizeof count) == sizeof count;
+}
+
+}  // namespace
+
+Interruption::Interruption() {
+  received = 0;
+  struct sigaction action {};
+  action.sa_handler = remember;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = static_cast<int>(SA_RESETHAND | static_cast<unsigned>(SA_RESTART));
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+Interruption::Interruption(std::optional<double> seconds,
+                           std::function<void(const Interruption&)> when_overdue)
+    : Interruption() {
+  constexpr double most_seconds = 1e9;
+  if (seconds) {
+    const std::chrono::duration<double> limit(std::min(*seconds, most_seconds));
+    deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
+  }
+  event = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (event < 0) return;
+  try {
+    watcher_ = std::jthread(
+        [this, overdue = std::move(when_overdue)](const std::stop_token& ended) { watch(ended, overdue); });
+  } catch (const std::system_error&) {  // no thread is left: the program looks between two steps
+  }
+}
+
+Interruption::~Interruption() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  if (watcher_.joinable()) {
+    watcher_.request_stop();
+    wake();
+    watcher_.join();
+  }
+  const int closed = event.exchange(-1);
+  if (closed >= 0) close(closed);
+}
+
+void Interruption::end() {
+  const auto lock = hold();
+  watcher_.request_stop();
+}
+
+int Interruption::signal() const {
+  return received;
+}
+
+bool Interruption::is_late() const {
+  return deadline_ && Clock::now() >= *deadline_;
+}
+
+void Interruption::watch(const std::stop_token& ended,
+                         const std::function<void(const Interruption&)>& when_overdue) {
+  constexpr auto grace = std::chrono::milliseconds(500);
+  while (!is_requested() && !ended.stop_requested()) wait_for_event(deadline_);
+  if (ended.stop_requested()) return;
+  source_.request_stop();
+  for (const auto end = Clock::now() + grace; Clock::now() < end;) {
+    if (ended.stop_requested()) return;
+    wait_for_event(end);
+  }
+  const auto lock = hold();
+  if (!ended.stop_requested()) when_overdue(*this);
+}
+
+int report_end(const Interruption& interruption, std::optional<double> seconds, const std::string& place,
+               int status) {
+  const int signal = interruption.signal();
+  const std::string cause =
+      signal != 0 ? "interrupted" : fmt::format("the time limit of {} s ended the run", seconds.value_or(0));
+  fmt::print(stderr, "supple: {} after {}\n", cause, place);
+  return signal != 0 ? exit_interrupted + signal : status;
+}
+
+void exit_now(int status) {
+  std::fflush(nullptr);
+  std::_Exit(status);
+}
+
+}  // namespace supple::cli

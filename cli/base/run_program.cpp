@@ -1,0 +1,95 @@
+#include "base/run_program.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <hdf5.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+
+#include "base/exit_status.hpp"
+#include "base/output_file.hpp"
+#include "base/text.hpp"
+
+namespace supple::cli {
+namespace {
+
+/// Opens /dev/null in place of standard streams that the caller has closed. Otherwise the first files that
+/// the program opens would be these streams, and messages would overwrite them.
+void open_closed_streams() {
+  for (const int stream : {0, 1, 2}) {
+    if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", O_RDWR) != stream) std::abort();
+  }
+}
+
+/// For the time in which the input is read, and nothing was written yet: Interruption replaces it then.
+extern "C" void end_at_signal(int signal) {
+  std::_Exit(exit_interrupted + signal);
+}
+
+int report_lack_of_memory() {
+  // Without a buffer, so that this needs no memory.
+  std::fputs("supple: the memory is used up; give fewer or smaller meshes, or fewer --threads\n", stderr);
+  return exit_unusable;
+}
+
+/// Libraries end the program where memory runs out in functions that must not throw. Then there is nothing to
+/// clean up: recordings are valid at any moment.
+[[noreturn]] void terminate() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    std::_Exit(report_lack_of_memory());
+  } catch (const std::exception& error) {  // a fault of the program
+    std::fprintf(stderr, "supple: %s\n", error.what());
+  } catch (...) {
+  }
+  std::abort();
+}
+
+}  // namespace
+
+int run_program(const std::function<int()>& run) {
+  open_closed_streams();
+  std::set_terminate(terminate);
+  // A limit of the file size (ulimit -f) is then an error of writing, as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    if (std::signal(signal, end_at_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+  // The program closes all recordings before it exits. Without this call, HDF5 would report handles that a
+  // damaged recording left open to standard error.
+  H5dont_atexit();
+  // The program reports what fails; HDF5 must not print its own messages.
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  try {
+    const int exit_status = run();
+    OutputFile("-").close();
+    return exit_status;
+  } catch (const std::bad_alloc&) {
+    return report_lack_of_memory();
+  } catch (const std::length_error&) {
+    return report_lack_of_memory();  // an array that no memory can hold
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "supple: {}: {}; check the path and who may use it\n",
+               one_line(error.path1().string()), error.code().message());
+    return exit_unusable;
+  } catch (const std::system_error& error) {
+    const bool is_thread = error.code() == std::errc::resource_unavailable_try_again;
+    fmt::print(stderr, "supple: {}\n",
+               is_thread ? "the system refuses to create a thread; raise its limits (ulimit -u, ulimit -v)"
+                         : one_line(error.what()));
+    return exit_unusable;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "supple: {}\n", one_line(error.what()));
+    return exit_unusable;
+  }
+}
+
+}  // namespace supple::cli

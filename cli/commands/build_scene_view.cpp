@@ -1,0 +1,159 @@
+#include "commands/build_scene_view.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "base/progress.hpp"
+#include "base/text.hpp"
+#include "inputs/frame_files.hpp"
+#include "session/messages/statistics.hpp"
+#include "supple/error.hpp"
+
+namespace supple::cli {
+namespace {
+
+template <class Kind>
+const Kind* motion_of(const InputObject& object) {
+  return object.motion ? std::get_if<Kind>(&*object.motion) : nullptr;
+}
+
+template <class Kind>
+bool has_motion(const Input& input) {
+  return std::any_of(input.objects.begin(), input.objects.end(),
+                     [](const InputObject& object) { return motion_of<Kind>(object) != nullptr; });
+}
+
+/// A scene in which files move some objects and waves move others.
+class FileFrames : public viewer::Frames {
+ public:
+  explicit FileFrames(const Input& input) : simulation_(input.simulation) {
+    for (const InputObject& object : input.objects) objects_.push_back(mover(object));
+    for (const InputObject& object : input.objects) {
+      if (const auto* sequence = motion_of<FrameSequence>(object))
+        count_ = std::max<std::uint64_t>(count_, sequence->files.size());
+      if (const auto* motion = motion_of<ComputedMotion>(object)) count_ = std::max(count_, motion->count);
+    }
+  }
+
+  std::uint64_t count() const override { return count_; }
+  void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override {
+    objects_[object](frame, positions);
+  }
+  const viewer::Series& series() const override { return series_; }
+
+ private:
+  using Mover = std::function<void(std::uint64_t frame, std::span<Vec3d> positions)>;
+
+  Mover mover(const InputObject& object) const {
+    if (const auto* sequence = motion_of<FrameSequence>(object)) {
+      const auto files = std::make_shared<const FrameFiles>(*sequence, object.mesh);
+      return [files](std::uint64_t frame, std::span<Vec3d> positions) { files->read(frame, positions); };
+    }
+    if (const auto* motion = motion_of<ComputedMotion>(object)) return motion->positions;
+    const auto rest = std::make_shared<const std::vector<Vec3d>>(object.mesh.positions);
+    if (const auto* motion = motion_of<WaveMotion>(object)) {
+      return [this, motion = *motion, rest](std::uint64_t frame, std::span<Vec3d> positions) {
+        apply_wave_motion(motion, simulation_.border, *rest,
+                          static_cast<double>(frame) * simulation_.time_step, positions);
+      };
+    }
+    return [rest](std::uint64_t, std::span<Vec3d> positions) {
+      std::copy(rest->begin(), rest->end(), positions.begin());
+    };
+  }
+
+  SimulationOptions simulation_;
+  std::vector<Mover> objects_;
+  std::uint64_t count_ = 0;
+  viewer::Series series_;
+};
+
+/// A recording. All objects move except static ones.
+class RecordedFrames : public viewer::Frames {
+ public:
+  explicit RecordedFrames(std::shared_ptr<const Recording> recording) : recording_(std::move(recording)) {
+    std::map<ObjectId, std::uint32_t> places;
+    for (const RecordedObject& object : recording_->header().objects)
+      places.emplace(object.id, static_cast<std::uint32_t>(places.size()));
+    // The same names as in frames, so that a page plots both in the same way.
+    series_.names.emplace_back("time");
+    viewer::for_each_statistic({}, [&](const char* name, double) { series_.names.emplace_back(name); });
+    Progress progress(count(), true);
+    for (std::uint64_t number = 0; number < count(); ++number) {
+      const RecordedFrame frame = recording_->summary(number);
+      series_.values.push_back(frame.time);
+      viewer::for_each_statistic(frame.stats,
+                                 [&](const char*, double value) { series_.values.push_back(value); });
+      const auto add = [&](const std::vector<ObjectPair>& pairs, std::vector<viewer::Series::Event>& events) {
+        for (const ObjectPair& pair : pairs)
+          events.push_back({static_cast<std::uint32_t>(number), places.at(pair.a), places.at(pair.b)});
+      };
+      add(frame.contact_events.begin, series_.contacts.begin);
+      add(frame.contact_events.end, series_.contacts.end);
+      add(frame.narrow_phase_events.begin, series_.narrow_phase.begin);
+      add(frame.narrow_phase_events.end, series_.narrow_phase.end);
+      add(frame.volume_events.begin, series_.volumes.begin);
+      add(frame.volume_events.end, series_.volumes.end);
+      progress.update(number + 1, fmt::format("reading frame {} of {}", number + 1, count()));
+    }
+  }
+
+  std::uint64_t count() const override { return recording_->frame_count(); }
+  void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override {
+    const std::vector<Vec3d> recorded = recording_->positions(frame, object);
+    std::copy(recorded.begin(), recorded.end(), positions.begin());
+  }
+  const viewer::Series& series() const override { return series_; }
+
+ private:
+  std::shared_ptr<const Recording> recording_;
+  viewer::Series series_;
+};
+
+/// Null for a simulation.
+std::shared_ptr<const viewer::Frames> frames_of(const Input& input, const ViewOptions& options) {
+  for (const InputObject& object : input.objects) {
+    if (const auto* motion = motion_of<RecordedMotion>(object))
+      return std::make_shared<const RecordedFrames>(motion->recording);
+  }
+  if (!has_motion<FrameSequence>(input) && !has_motion<ComputedMotion>(input)) return nullptr;
+  if (has_motion<MassSpringMotion>(input) || has_motion<RigidMotion>(input))
+    throw Error(fmt::format(
+        "{}: some objects are moved by files, others are bodies that a simulation moves, which the viewer "
+        "cannot show together; record them first, supple simulate {} --record run.h5, and view run.h5",
+        options.inputs.front(), options.inputs.front()));
+  return std::make_shared<const FileFrames>(input);
+}
+
+viewer::ViewedObject object_of(const InputObject& object) {
+  viewer::ViewedObject shown{object.mesh, object.options, {}};
+  if (const auto* motion = motion_of<WaveMotion>(object)) shown.motion = *motion;
+  if (const auto* motion = motion_of<MassSpringMotion>(object)) shown.motion = *motion;
+  if (const auto* motion = motion_of<RigidMotion>(object)) shown.motion = *motion;
+  return shown;
+}
+
+std::string title_of(const std::vector<std::string>& inputs) {
+  const std::string first = valid_utf8(std::filesystem::path(inputs.front()).filename().string());
+  return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
+}
+
+}  // namespace
+
+viewer::SceneView build_scene_view(const Input& input, const ViewOptions& options) {
+  viewer::SceneView show;
+  show.title = title_of(options.inputs);
+  show.simulation = input.simulation;
+  for (const InputObject& object : input.objects) show.objects.push_back(object_of(object));
+  show.frames = frames_of(input, options);
+  return show;
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "inputs/inputs.hpp"
+#include "options/options.hpp"
+#include "supple/simulation.hpp"
+
+namespace supple::cli {
+
+/// Replaces options of the input by those of the command line.
+void apply(const MethodOptions& options, Input& input);
+
+/// Adds an object of an input at its start positions. Throws `Error` as `Simulation::add` does, or when a
+/// frame of a sequence does not fit the object.
+ObjectId add_object(Simulation& simulation, const InputObject& object);
+/// Makes a simulation of the objects of an input, in their order. Throws `Error` as `add_object` does.
+Simulation build_simulation(const Input& input);
+
+}  // namespace supple::cli

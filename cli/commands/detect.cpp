@@ -1,0 +1,131 @@
+#include "commands/detect.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/exit_status.hpp"
+#include "base/interruption.hpp"
+#include "base/missing_threads.hpp"
+#include "base/output_names.hpp"
+#include "base/progress.hpp"
+#include "base/text.hpp"
+#include "commands/build_simulation.hpp"
+#include "inputs/half_turns.hpp"
+#include "inputs/inputs.hpp"
+#include "inputs/recorded_input.hpp"
+#include "options/option_needs.hpp"
+#include "reports/reports.hpp"
+#include "supple/error.hpp"
+
+namespace supple::cli {
+namespace {
+
+/// The number of frames of the longest sequence of files of an object; 0 without such a sequence.
+std::uint64_t longest_sequence(const Input& input) {
+  std::uint64_t longest = 0;
+  for (const InputObject& object : input.objects) {
+    if (const auto* sequence = object.motion ? std::get_if<FrameSequence>(&*object.motion) : nullptr)
+      longest = std::max<std::uint64_t>(longest, sequence->files.size());
+    if (const auto* motion = object.motion ? std::get_if<ComputedMotion>(&*object.motion) : nullptr)
+      longest = std::max(longest, motion->count);
+  }
+  return longest;
+}
+
+bool moves(const Input& input) {
+  return std::any_of(input.objects.begin(), input.objects.end(),
+                     [](const InputObject& object) { return object.motion.has_value(); });
+}
+
+std::uint64_t count_frames(const Input& input, const DetectOptions& options) {
+  const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
+  const bool is_scene = is_scene_file(options.inputs.front());
+  std::uint64_t frames = 1;
+  if (input.frames)
+    frames = input.frames->count;
+  else if (is_scene && moves(input))
+    frames = std::max<std::uint64_t>(longest_sequence(input), continuous ? 2 : 1);
+  if (options.frames) {
+    if (!is_scene && *options.frames > frames)
+      throw Error(fmt::format("--frames: {} has {}; give at most that number",
+                              input.frames ? input.frames->name : options.inputs.front(),
+                              counted(frames, "frame")));
+    frames = *options.frames;
+  }
+  if (continuous && frames == 1 && (input.frames || moves(input)))
+    throw Error(fmt::format("{}: one frame has no motion; continuous contacts need at least two frames",
+                            input.frames ? input.frames->name : options.inputs.front()));
+  return frames;
+}
+
+/// One mesh, or its frames, without a scene around it: it can only be near itself.
+bool is_one_mesh(const std::vector<std::string>& inputs, const Input& input) {
+  return input.objects.size() == 1 && !is_scene_file(inputs.front()) && !is_recording(inputs.front());
+}
+
+}  // namespace
+
+int run_detect(const DetectOptions& options) {
+  MeshReading reading = options.reading;
+  if (!is_recording(options.inputs.front())) reading.clips.frames = options.frames;
+  Input input = options.sequence ? read_sequence(options.inputs, reading.conversion)
+                                 : read_objects(options.inputs, {}, reading);
+  print_notes(input);
+  check_output_names({{"--json", options.json}, {"--csv", options.csv}}, input.files);
+  apply(options, input);
+  if (is_one_mesh(options.inputs, input) && has_proximity(options.scene))
+    input.objects.front().options.self_collision = true;
+  const std::uint64_t frames = count_frames(input, options);
+  warn_of_missing_threads(options.scene.threads);
+  const bool prints_text = !options.quiet && options.json != "-" && options.csv != "-";
+  if (options.sequence && prints_text) {
+    if (const std::string gaps = describe_gaps(input.files); !gaps.empty()) fmt::print("{}\n", gaps);
+  }
+  Simulation simulation = build_simulation(input);
+
+  // Continuous contacts are found between the previous frame and this frame, so the first frame has none.
+  const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
+  const std::uint64_t first = options.scene.contacts == ContactKinds::continuous && frames > 1 ? 1 : 0;
+  const char* const noun = continuous ? "step" : "frame";
+  Reports reports(options, input, simulation.scene(), noun);
+  std::optional<HalfTurns> turns;
+  if (continuous) turns.emplace(simulation, input);
+  std::uint64_t done = 0;
+  const auto end_early = [&](const Interruption& end) {
+    reports.finish(true);
+    const std::string place = fmt::format("{} of {}", grouped(done), counted(frames - first, noun));
+    return report_end(end, options.limits.seconds, place,
+                      end.signal() != 0 ? exit_done : reports.exit_status());
+  };
+  Interruption interruption(options.limits.seconds,
+                            [&](const Interruption& end) { exit_now(end_early(end)); });
+  {
+    Progress progress(frames - first, !options.quiet, noun);
+    for (std::uint64_t number = first; number < frames && !interruption.is_requested(); ++number) {
+      const bool is_start = number == 0 && !(continuous && frames == 1);
+      const DetectRequest request{.max_contacts = options.limits.max_contacts, .stop = interruption.token()};
+      if (turns) turns->remember_positions();
+      Frame frame{number, is_start ? simulation.detect(request) : simulation.step(request)};
+      if (frame.result.stopped) break;
+      if (turns) frame.turned = turns->find();
+      if (options.verify && !(is_start && continuous))
+        frame.verify = simulation.scene().verify({interruption.token()});
+      if (interruption.token().stop_requested() && frame.verify) break;
+      const auto hold = interruption.hold();
+      reports.add(frame);
+      done = number - first + 1;
+      progress.update(done, fmt::format("{} {} of {}", noun, done, frames - first));
+    }
+  }
+  interruption.end();
+  if (done < frames - first) return end_early(interruption);
+  reports.finish();
+  return reports.exit_status();
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "options/options.hpp"
+
+namespace supple::cli {
+
+/// Runs `supple detect`; returns the exit status. Throws `Error` for unusable input.
+int run_detect(const DetectOptions& options);
+
+}  // namespace supple::cli

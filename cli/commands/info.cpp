@@ -1,0 +1,202 @@
+#include "commands/info.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "base/exit_status.hpp"
+#include "base/json_writer.hpp"
+#include "base/output_names.hpp"
+#include "base/text.hpp"
+#include "inputs/inputs.hpp"
+#include "inputs/parts.hpp"
+#include "session/messages/described_json.hpp"
+#include "supple/inspection.hpp"
+#include "supple/result_descriptions.hpp"
+#include "supple/scene.hpp"
+#include "supple/topology.hpp"
+#include "supple/version.hpp"
+
+namespace supple::cli {
+namespace {
+
+/// All reported data of one object.
+struct MeshInfo {
+  std::string name;
+  MeshTopology topology;
+  bool is_open_at_seams = false;
+  std::uint64_t lines = 0, points = 0;  ///< edges and points of no triangle
+  PolygonCounts polygons;
+  std::uint64_t non_finite_vertices = 0;
+  std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices; none when no vertex is finite
+  std::uint32_t arity = 0;
+  OctreeStatistics octree;
+};
+
+void measure_positions(const TriangleMesh& mesh, MeshInfo& info) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::array<Vec3d, 2> bounds{Vec3d{infinity, infinity, infinity}, Vec3d{-infinity, -infinity, -infinity}};
+  for (const Vec3d& p : mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      ++info.non_finite_vertices;
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      bounds[0][axis] = std::fmin(bounds[0][axis], p[axis]);
+      bounds[1][axis] = std::fmax(bounds[1][axis], p[axis]);
+    }
+  }
+  if (info.non_finite_vertices < mesh.positions.size()) info.bounds = bounds;
+}
+
+MeshInfo measure(const InputObject& object, SceneOptions scene_options, const InfoOptions& options) {
+  ObjectOptions chosen = object.options;
+  options.given_objects.apply_to(chosen);
+  const TriangleMesh surface = chosen.weld ? welded(object.mesh) : object.mesh;
+  MeshInfo info;
+  info.name = object.mesh.name;
+  info.topology = compute_topology(surface);
+  info.is_open_at_seams = is_open_at_seams(surface);
+  info.lines = object.mesh.edges.size();
+  info.points = object.mesh.points.size();
+  info.polygons = object.mesh.polygons;
+  measure_positions(object.mesh, info);
+  info.arity = chosen.octree.arity;
+  scene_options.threads = 1;
+  options.given_scene.apply_to(scene_options);
+  Scene scene(scene_options);
+  info.octree = SceneInspector(scene).octree_statistics(scene.add(object.mesh, chosen));
+  return info;
+}
+
+std::string describe_polygons(const PolygonCounts& polygons) {
+  std::string text;
+  const auto add = [&](std::uint64_t number, const std::string& words) {
+    if (number > 0) text += (text.empty() ? "" : ", ") + words;
+  };
+  add(polygons.quads, counted(polygons.quads, "quad"));
+  add(polygons.larger, grouped(polygons.larger) + " of more than 4 corners");
+  add(polygons.concave, grouped(polygons.concave) + " concave");
+  add(polygons.crossing,
+      grouped(polygons.crossing) + (polygons.crossing == 1 ? " crosses itself" : " cross themselves"));
+  add(polygons.bent, grouped(polygons.bent) + " not flat");
+  return text;
+}
+
+void print_text(const MeshInfo& info) {
+  const MeshTopology& t = info.topology;
+  fmt::print("{}\n", one_line(info.name));
+  fmt::print("  vertices     {}", grouped(t.vertices));
+  if (t.unused_vertices > 0) fmt::print(", {} in no triangle", grouped(t.unused_vertices));
+  if (info.non_finite_vertices > 0) fmt::print(", {} not finite", grouped(info.non_finite_vertices));
+  fmt::print("\n  triangles    {}", grouped(t.triangles));
+  if (t.degenerate_triangles > 0) fmt::print(", {} with a repeated vertex", grouped(t.degenerate_triangles));
+  if (info.polygons != PolygonCounts{}) fmt::print("\n  polygons     {}", describe_polygons(info.polygons));
+  fmt::print("\n  edges        {}\n", grouped(t.edges));
+  if (info.lines + info.points > 0)
+    fmt::print("  lines        {}, and {}\n", counted(info.lines, "edge"), counted(info.points, "point"));
+  fmt::print("  surface      {}\n", describe_surface(t));
+  if (info.is_open_at_seams)
+    fmt::print(
+        "               most open edges are seams between vertices at equal positions; --weld closes them\n");
+  fmt::print("  components   {}, Euler characteristic {}\n", grouped(t.components), t.euler_characteristic);
+  if (info.bounds) {
+    const auto& [lowest, highest] = *info.bounds;
+    fmt::print("  bounds       ({}, {}, {}) to ({}, {}, {})\n", lowest.x, lowest.y, lowest.z, highest.x,
+               highest.y, highest.z);
+  }
+  const OctreeStatistics& o = info.octree;
+  // Edges and points of no triangle are in the octree, too.
+  const char* const item = info.lines + info.points > 0 ? "element" : "triangle";
+  fmt::print(
+      "  octree       {}, {}, depth {}, {:.1f} {}s per leaf (largest {}), {:.1f} of {} children per node\n",
+      counted(o.nodes, "node"), o.leaves == 1 ? "1 leaf" : grouped(o.leaves) + " leaves", o.depth,
+      o.mean_leaf_size, item, o.largest_leaf, o.mean_node_width, info.arity);
+  if (o.cost > 0) fmt::print("  quality      {:.1f} visits per query\n", o.cost);
+  fmt::print("  memory       {} bytes, {:.1f} per {}\n\n", grouped(o.bytes), o.bytes_per_triangle, item);
+}
+
+void write_octree(JsonWriter& json, const OctreeStatistics& octree) {
+  json.key("octree");
+  json.begin_object();
+  viewer::write_members(json, octree);
+  json.end_object();
+}
+
+void write_polygons(JsonWriter& json, const PolygonCounts& polygons) {
+  json.key("polygons");
+  json.begin_object();
+  viewer::write_members(json, polygons);
+  json.end_object();
+}
+
+void write_json(JsonWriter& json, const MeshInfo& info) {
+  const MeshTopology& t = info.topology;
+  json.begin_object();
+  json.member("name", info.name);
+  json.member("vertices", t.vertices);
+  json.member("triangles", t.triangles);
+  write_polygons(json, info.polygons);
+  json.member("edges", t.edges);
+  json.member("lines", info.lines);
+  json.member("points", info.points);
+  json.member("closed", t.closed());
+  json.member("boundary_edges", t.boundary_edges);
+  json.member("odd_edges", t.odd_edges);
+  json.member("open_at_seams", info.is_open_at_seams);
+  json.member("non_manifold_edges", t.non_manifold_edges);
+  json.member("components", t.components);
+  json.member("euler_characteristic", t.euler_characteristic);
+  json.member("unused_vertices", t.unused_vertices);
+  json.member("degenerate_triangles", t.degenerate_triangles);
+  json.member("non_finite_vertices", info.non_finite_vertices);
+  json.key("bounds");
+  if (info.bounds) {
+    json.begin_array();
+    for (const Vec3d& corner : *info.bounds) json.value(corner);
+    json.end_array();
+  } else {
+    json.null();
+  }
+  write_octree(json, info.octree);
+  json.end_object();
+}
+
+}  // namespace
+
+int run_info(const InfoOptions& options) {
+  Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
+  print_notes(input);
+  for (InputObject& object : input.objects) {
+    options.given_objects.apply_to(object.options);
+    object.splits = object.splits || options.parts;
+  }
+  split_parts(input);
+  check_output_names({{"--json", options.json}}, input.files);
+  std::optional<JsonWriter> json;
+  if (!options.json.empty()) {
+    json.emplace(options.json);
+    json->begin_object();
+    json->member("supple", std::string(SUPPLE_VERSION));
+    json->key("objects");
+    json->begin_array();
+  }
+  for (const InputObject& object : input.objects) {
+    const MeshInfo info = measure(object, input.simulation.scene, options);
+    if (json) write_json(*json, info);
+    if (options.json != "-") print_text(info);
+  }
+  if (json) {
+    json->end_array();
+    json->end_object();
+    json->close();
+  }
+  return exit_done;
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,188 @@
+#include "commands/simulate.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "base/exit_status.hpp"
+#include "base/interruption.hpp"
+#include "base/missing_threads.hpp"
+#include "base/output_names.hpp"
+#include "base/progress.hpp"
+#include "base/text.hpp"
+#include "commands/build_simulation.hpp"
+#include "commands/energy_table.hpp"
+#include "commands/frame_recorder.hpp"
+#include "inputs/half_turns.hpp"
+#include "inputs/inputs.hpp"
+#include "reports/reports.hpp"
+#include "session/messages/long_steps.hpp"
+#include "supple/error.hpp"
+
+namespace supple::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Input read_input(const SimulateOptions& options) {
+  if (!is_scene_file(options.input))
+    throw Error(fmt::format(
+        "{}: is not a scene file; write a SCENE.toml with an [[object]] that has this file as its mesh",
+        options.input));
+  return read_objects({options.input}, {options.seed, options.time_step});
+}
+
+/// The number of steps: they reach the given time and end less than one step after it.
+std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
+  constexpr std::uint64_t default_frames = 301;
+  if (!options.seconds) return options.frames.value_or(default_frames) - 1;
+  const double steps = *options.seconds / time_step;
+  if (steps > 1e9)
+    throw Error(fmt::format("--seconds: {} are {:.3g} steps of {}; at most 1e9 are allowed", *options.seconds,
+                            steps, time_step));
+  const double whole = std::round(steps);
+  const bool is_whole = std::abs(steps - whole) < 1e-9 * whole;  // up to rounding of the division
+  return static_cast<std::uint64_t>(is_whole ? whole : std::ceil(steps));
+}
+
+/// A running simulation and its reports.
+class Run {
+ public:
+  Run(const SimulateOptions& options, const Input& input)
+      : options_(options),
+        steps_(count_steps(options, input.simulation.time_step)),
+        simulation_(build_simulation(input)),
+        reports_(options, input, simulation_.scene(), "frame"),
+        recorder_(options.record, simulation_, input),
+        energies_(simulation_) {
+    if (contains(options.scene.contacts, ContactKinds::continuous)) turns_.emplace(simulation_, input);
+  }
+
+  /// Runs until the last step, an interruption or a blow-up. Returns the exit status.
+  int go();
+
+ private:
+  bool take_steps(Interruption& interruption);
+  /// Returns false when the detection was stopped.
+  bool add_frame(Interruption& interruption, const DetectResult& result);
+  void finish(bool was_ended);
+  enum class Moment { between_steps, in_a_step };
+  /// Reports the frames so far. Returns the exit status.
+  int end_early(const Interruption& interruption, Moment moment);
+  static DetectRequest request_of(const Interruption& interruption) { return {.stop = interruption.token()}; }
+
+  const SimulateOptions& options_;
+  std::uint64_t steps_;
+  Simulation simulation_;
+  Reports reports_;
+  FrameRecorder recorder_;
+  EnergyTable energies_;
+  std::optional<HalfTurns> turns_;
+  Clock::time_point start_ = Clock::now();
+  std::uint64_t frames_ = 0;  ///< that were added
+  double time_ = 0;           ///< simulated, s, of the last of them
+};
+
+int Run::go() {
+  if (const auto warning = viewer::warning_of_long_steps(simulation_))
+    fmt::print(stderr, "supple: warning: {}: {}\n", one_line(options_.input), one_line(*warning));
+  Interruption interruption(options_.limits.seconds,
+                            [this](const Interruption& end) { exit_now(end_early(end, Moment::in_a_step)); });
+  start_ = Clock::now();
+  const bool is_whole =
+      !interruption.is_requested() && add_frame(interruption, simulation_.detect(request_of(interruption)));
+  const bool stable = !is_whole || take_steps(interruption);
+  interruption.end();
+  if (stable && frames_ < steps_ + 1) return end_early(interruption, Moment::between_steps);
+  finish(false);
+  if (reports_.has_tables()) energies_.print(simulation_);
+  return stable ? reports_.exit_status() : exit_unusable;
+}
+
+/// False when the motion blew up.
+bool Run::take_steps(Interruption& interruption) {
+  Progress progress(steps_, !options_.quiet, "step");
+  std::optional<std::string> fault;
+  while (simulation_.step_count() < steps_ && !interruption.is_requested()) {
+    if (turns_) turns_->remember_positions();
+    try {
+      if (!add_frame(interruption, simulation_.step(request_of(interruption)))) break;
+    } catch (const MotionError& error) {
+      fault = error.what();
+      break;
+    }
+    const std::uint64_t done = simulation_.step_count();
+    progress.update(done, fmt::format("step {} of {}", done, steps_));
+  }
+  if (fault) fmt::print(stderr, "supple: {}: {}\n", one_line(options_.input), *fault);
+  return !fault;
+}
+
+bool Run::add_frame(Interruption& interruption, const DetectResult& result) {
+  if (result.stopped) return false;
+  const std::uint64_t number = simulation_.step_count();
+  Frame frame{number, result};
+  frame.simulated = {simulation_.time(), number == 0 ? 0 : simulation_.motion_seconds()};
+  if (turns_ && number > 0) frame.turned = turns_->find();
+  const bool is_start_of_continuous =
+      number == 0 && contains(options_.scene.contacts, ContactKinds::continuous);
+  if (options_.verify && !is_start_of_continuous)
+    frame.verify = simulation_.scene().verify({interruption.token()});
+  if (frame.verify && interruption.token().stop_requested()) return false;
+  const auto hold = interruption.hold();
+  recorder_.add(result);
+  reports_.add(frame);
+  frames_ = number + 1;
+  time_ = simulation_.time();
+  return true;
+}
+
+void Run::finish(bool was_ended) {
+  recorder_.close();
+  if (reports_.has_tables() && frames_ > 0) {
+    const double seconds = std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 0.0);
+    const auto steps = static_cast<double>(frames_ - 1);
+    fmt::print("{} of {} s: {:.6g} s simulated in {:.3g} s, {:.3g} steps/s\n", counted(frames_ - 1, "step"),
+               simulation_.options().time_step, time_, seconds, seconds > 0 ? steps / seconds : 0);
+  }
+  reports_.finish(was_ended);
+}
+
+int Run::end_early(const Interruption& interruption, Moment moment) {
+  finish(true);
+  // In a step, another thread changes the simulation.
+  if (reports_.has_tables() && moment == Moment::between_steps) energies_.print(simulation_);
+  std::string place = fmt::format("{} of {}, {:.6g} s", grouped(frames_ == 0 ? 0 : frames_ - 1),
+                                  counted(steps_, "step"), time_);
+  if (!options_.record.empty())
+    place += fmt::format("; {} has {}", one_line(options_.record), counted(frames_, "frame"));
+  return report_end(interruption, options_.limits.seconds, place,
+                    interruption.signal() != 0 ? exit_done : reports_.exit_status());
+}
+
+}  // namespace
+
+int run_simulate(const SimulateOptions& options) {
+  Input input = read_input(options);
+  print_notes(input);
+  std::string xdmf;
+  if (!options.record.empty())
+    xdmf = std::filesystem::path(options.record).replace_extension(".xdmf").string();
+  check_output_names({{"--json", options.json},
+                      {"--csv", options.csv},
+                      {"--record", options.record},
+                      {"the .xdmf file of --record", xdmf}},
+                     input.files);
+  apply(options, input);
+  warn_of_missing_threads(options.scene.threads);
+  return Run(options, input).go();
+}
+
+}  // namespace supple::cli

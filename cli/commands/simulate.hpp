@@ -1,0 +1,10 @@
+#pragma once
+
+#include "options/options.hpp"
+
+namespace supple::cli {
+
+/// Runs `supple simulate`; returns the exit status. Throws `Error` for unusable input.
+int run_simulate(const SimulateOptions& options);
+
+}  // namespace supple::cli

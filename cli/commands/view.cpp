@@ -1,0 +1,136 @@
+#include "commands/view.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/exit_status.hpp"
+#include "base/interruption.hpp"
+#include "base/missing_threads.hpp"
+#include "base/output_names.hpp"
+#include "base/text.hpp"
+#include "commands/browser.hpp"
+#include "commands/build_scene_view.hpp"
+#include "commands/build_simulation.hpp"
+#include "export/embedded.hpp"
+#include "export/page_file.hpp"
+#include "inputs/inputs.hpp"
+#include "server/server.hpp"
+#include "session/packed/packed_scene.hpp"
+#include "session/session.hpp"
+#include "supple/error.hpp"
+
+namespace supple::cli {
+namespace {
+
+void check_build() {
+  if (viewer::embedded_page().empty())
+    throw Error(
+        "this supple was built without the viewer; run make program, or configure the build with "
+        "-DSUPPLE_BUILD_VIEWER=ON, which needs npm and clang-19's WebAssembly (tools/install_dependencies.sh "
+        "installs them on Debian 12)");
+}
+
+/// Whether a mesh of the command line plays an animation.
+bool moves_by_itself(const Input& input) {
+  return input.scene_text.empty() && input.frames &&
+         std::any_of(input.objects.begin(), input.objects.end(), [](const InputObject& object) {
+           return object.motion && std::holds_alternative<ComputedMotion>(*object.motion);
+         });
+}
+
+Input read_input(const ViewOptions& options) {
+  const bool is_scene = is_scene_file(options.inputs.front());
+  if (options.seed && !is_scene) throw Error("--seed: only a scene file uses random numbers; leave it out");
+  if (options.time_step && !is_scene && !options.sequence)
+    throw Error("--time-step: only a scene file or --sequence has time steps; leave it out");
+  if (!options.sequence) {
+    Input input = read_objects(options.inputs, {options.seed, options.time_step}, options.reading);
+    if (options.reading.clips.frames && !moves_by_itself(input))
+      throw Error("--frames: only the animation of a mesh file has a choice of frames; leave it out");
+    return input;
+  }
+  Input input = read_sequence(options.inputs, options.reading.conversion);
+  // Mesh files contain no times, so play 25 frames per second.
+  constexpr double film_seconds = 0.04;
+  input.simulation.time_step = options.time_step.value_or(film_seconds);
+  return input;
+}
+
+/// The size in bytes of the frames in a page before compression: positions as floats.
+double size_of_frames(const viewer::SceneView& show) {
+  if (!show.frames) return 0;
+  double vertices = 0;
+  for (const viewer::ViewedObject& object : show.objects) {
+    if (!object.options.is_static) vertices += static_cast<double>(object.mesh.positions.size());
+  }
+  return 12 * vertices * static_cast<double>(show.frames->count());
+}
+
+void check_page_size(const std::string& file, double bytes, double most) {
+  if (bytes <= most) return;
+  throw Error(
+      fmt::format("{}: the page would have {:.0f} MB{}, but browsers open at most {} MB; record fewer frames "
+                  "or coarser meshes, or send the recording itself",
+                  file, bytes / 1e6, most > viewer::largest_page ? " before compression" : "",
+                  viewer::largest_page / 1'000'000));
+}
+
+int write_page(const viewer::SceneView& show, const ViewOptions& options) {
+  // Positions do not compress by a larger factor.
+  constexpr double most_compression = 10;
+  const auto most = static_cast<double>(viewer::largest_page);
+  check_page_size(options.page_file, size_of_frames(show), most_compression * most);
+  const std::vector<std::byte> packed = viewer::pack(show);
+  const std::string page =
+      viewer::page_with_cargo(viewer::embedded_page(), packed, viewer::embedded_module());
+  check_page_size(options.page_file, static_cast<double>(page.size()), most);
+  viewer::replace_file(options.page_file, page);
+  fmt::print("{}: {:.2f} MB, {}{}\n", one_line(options.page_file), static_cast<double>(page.size()) / 1e6,
+             counted(show.objects.size(), "object"),
+             show.frames ? fmt::format(", {}", counted(show.frames->count(), "frame")) : "");
+  return exit_done;
+}
+
+void warn_of_others(const ViewOptions& options) {
+  if (viewer::is_loopback(options.address)) return;
+  fmt::print(stderr,
+             "supple: warning: --host {}: everyone who can reach this machine and knows the address below "
+             "can see and control the page; the connection is not encrypted\n",
+             one_line(options.address));
+}
+
+int serve(viewer::SceneView show, const ViewOptions& options) {
+  viewer::Server server(viewer::Session(std::move(show), options.budget),
+                        {options.address, options.port, viewer::embedded_page()});
+  warn_of_others(options);
+  const Interruption interruption;
+  fmt::print("Open {}\n", server.url());
+  std::fflush(stdout);
+  std::optional<BrowserVisit> visit;
+  if (options.open_browser) visit.emplace(server.url());
+  server.run([&] { return interruption.signal() != 0; });
+  return exit_done;
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options) {
+  check_build();
+  Input input = read_input(options);
+  print_notes(input);
+  check_output_names({{"--export", options.page_file}}, input.files);
+  apply(options, input);
+  viewer::SceneView show = build_scene_view(input, options);
+  if (!options.page_file.empty()) return write_page(show, options);
+  warn_of_missing_threads(options.scene.threads);
+  return serve(std::move(show), options);
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,110 @@
+#include "inputs/parts.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/text.hpp"
+#include "supple/error.hpp"
+#include "supple/topology.hpp"
+
+namespace supple::cli {
+namespace {
+
+/// The numbers that vertices of the whole mesh have in a part; those of other parts are left out.
+std::vector<std::uint32_t> ids_in_part(const std::vector<std::uint32_t>& of_mesh,
+                                       const std::vector<std::uint32_t>& part) {
+  std::vector<std::uint32_t> ids;
+  for (const std::uint32_t vertex : of_mesh) {
+    const auto place = std::lower_bound(part.begin(), part.end(), vertex);
+    if (place != part.end() && *place == vertex)
+      ids.push_back(static_cast<std::uint32_t>(place - part.begin()));
+  }
+  return ids;
+}
+
+/// The motion of a part: random motions differ from part to part, as those of copies do.
+Motion motion_of_part(const InputObject& whole, std::uint64_t number,
+                      const std::vector<std::uint32_t>& vertices) {
+  Motion motion = *whole.motion;
+  if (auto* const wave = std::get_if<WaveMotion>(&motion)) {
+    wave->seed += number;
+  } else if (auto* const rigid = std::get_if<RigidMotion>(&motion)) {
+    if (rigid->seed) *rigid->seed += number;
+  } else if (auto* const springs = std::get_if<MassSpringMotion>(&motion)) {
+    if (springs->seed) *springs->seed += number;
+    springs->springs.fixed_vertices = ids_in_part(springs->springs.fixed_vertices, vertices);
+    for (MassSpringMotion::Handle& handle : springs->handles)
+      handle.vertices = ids_in_part(handle.vertices, vertices);
+    std::erase_if(springs->handles,
+                  [](const MassSpringMotion::Handle& handle) { return handle.vertices.empty(); });
+  } else {
+    throw Error(
+        fmt::format("{}: the frames of a sequence or recording have no parts; leave out the parts, "
+                    "or save each part as a sequence of its own",
+                    one_line(whole.mesh.name)));
+  }
+  return motion;
+}
+
+void add_parts(InputObject whole, std::vector<InputObject>& objects) {
+  std::vector<MeshPart> parts = split_into_parts(whole.mesh, whole.options.weld);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    MeshPart& part = parts[i];
+    InputObject& object = objects.emplace_back();
+    object.options = whole.options;
+    if (whole.motion) object.motion = motion_of_part(whole, i, part.vertices);
+    object.mesh = std::move(part.mesh);
+    if (parts.size() > 1) object.mesh.name += fmt::format(" part {}", i + 1);
+    if (!object.options.name.empty()) object.options.name = object.mesh.name;
+    object.part = PartOfMesh{whole.mesh.name, std::move(part.vertices), std::move(part.triangles), {}};
+    if (!whole.options.solid) continue;
+    object.part->not_solid = object.mesh.triangles.empty()
+                                 ? "it has no triangles"
+                                 : fault_of_solid(whole.options.weld ? welded(object.mesh) : object.mesh);
+    object.options.solid = object.part->not_solid->empty();
+  }
+}
+
+}  // namespace
+
+void split_parts(Input& input) {
+  std::vector<InputObject> objects;
+  for (InputObject& object : input.objects) {
+    if (object.splits)
+      add_parts(std::move(object), objects);
+    else
+      objects.push_back(std::move(object));
+  }
+  input.objects = std::move(objects);
+}
+
+std::string describe_solid_parts(const Input& input) {
+  constexpr std::size_t most_named = 20;
+  std::size_t parts = 0, solid = 0;
+  std::string solid_names, others;
+  const auto name = [](std::string& names, std::size_t number, const std::string& text) {
+    if (number <= most_named) names += text;
+    if (number == most_named + 1) names += ", ...";
+  };
+  for (const InputObject& object : input.objects) {
+    if (!object.part || !object.part->not_solid) continue;
+    ++parts;
+    const std::string text = one_line(object.mesh.name);
+    if (object.options.solid)
+      name(solid_names, ++solid, (solid_names.empty() ? ": " : ", ") + text);
+    else
+      name(others, parts - solid, fmt::format("\n  {}: {}", text, *object.part->not_solid));
+  }
+  if (parts == 0) return "";
+  std::string text =
+      fmt::format("{} of {} solid{}", grouped(solid), counted(parts, "part is", "parts are"), solid_names);
+  if (!others.empty()) text += fmt::format("\nnot solid:{}", others);
+  return text;
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,351 @@
+#include "options/description_tables.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "reports/csv_report.hpp"
+#include "session/messages/sections.hpp"
+#include "session/settings.hpp"
+#include "supple/format_descriptions.hpp"
+#include "supple/record_descriptions.hpp"
+#include "supple/simulation_descriptions.hpp"
+
+namespace supple::cli {
+namespace {
+
+std::string code(const std::string& text) {
+  return text.empty() ? "" : fmt::format("`{}`", text);
+}
+
+template <class Struct, class Value>
+std::string allowed_values(const Field<Struct, Value>& field) {
+  if constexpr (WordedSet<Value>) {
+    return fmt::format("`{}`; several with commas between them", fmt::join(set_words<Value>, "`, `"));
+  } else if constexpr (Worded<Value>) {
+    return code(list_of_words<Value>("`, `"));
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    if (field.has_truth_words()) return fmt::format("`{}`, `{}`", field.truth_words[0], field.truth_words[1]);
+    return "`true`, `false`";
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return "text";
+  } else if constexpr (std::is_same_v<Value, Vec3d>) {
+    return "three finite numbers";
+  } else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>>) {
+    return text_of(field.range, true);
+  } else if constexpr (std::is_same_v<Value, std::optional<RootCube>>) {
+    return range_of_root_cube;
+  } else {
+    ValueRange range = field.range;
+    range.includes_infinity = false;  // infinity is written as none
+    return text_of(range, std::is_integral_v<Value>);
+  }
+}
+
+template <class Struct, class Value>
+std::string default_value(const Field<Struct, Value>& field, const Value& value) {
+  if constexpr (Worded<Value>) {
+    return code(word_of(value));
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    if (field.has_truth_words()) return code(field.truth_words[value ? 1 : 0]);
+    return value ? "`true`" : "`false`";
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return "";
+  } else if constexpr (std::is_same_v<Value, Vec3d>) {
+    return fmt::format("[{}, {}, {}]", value.x, value.y, value.z);
+  } else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>> ||
+                       std::is_same_v<Value, std::optional<RootCube>>) {
+    return "none";
+  } else {
+    return std::isinf(static_cast<double>(value)) ? "none" : fmt::format("{}", value);
+  }
+}
+
+/// The type of a field in a recording.
+template <class Struct, class Value>
+const char* stored_type(const Field<Struct, Value>& field) {
+  if (std::is_same_v<Value, double>) return "float64";
+  if (std::is_same_v<Value, std::uint64_t>) return "uint64";
+  if (std::is_same_v<Value, std::uint32_t>) return "uint32";
+  if (std::is_same_v<Value, bool> && !field.has_truth_words()) return "uint8";
+  if (std::is_same_v<Value, std::optional<RootCube>>) return "float64, 4";
+  return "text";
+}
+
+template <class Value>
+constexpr bool is_in_tables =
+    Worded<Value> || std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string> ||
+    std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::optional<std::uint64_t>> ||
+    std::is_same_v<Value, std::optional<RootCube>>;
+
+/// Calls `row(field, default_value)` for each option of a structure, except those of the machine.
+template <class Struct, class Row>
+void for_each_row(Row row) {
+  const Struct defaults{};
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        if constexpr (is_in_tables<std::remove_cvref_t<decltype(value)>>) {
+          if (!field.is_of_machine) row(field, value);
+        }
+      },
+      defaults);
+}
+
+template <class Print>
+void table(const char* name, const char* header, Print print) {
+  std::string rule;
+  for (const char c : std::string_view(header)) {
+    if (c == '|') rule += rule.empty() ? "|" : "---|";
+  }
+  fmt::print("<!-- begin {} -->\n{}\n{}\n", name, header, rule);
+  print();
+  fmt::print("<!-- end {} -->\n", name);
+}
+
+void print_option(const auto& field, const auto& value) {
+  fmt::print("| `{}` | {} | {} | {} | {} |\n", field.key, default_value(field, value), field.unit,
+             allowed_values(field), field.doc);
+}
+constexpr const char* option_header = "| Key | Default | Unit | Allowed | Meaning |";
+
+template <class... Structs>
+void option_table(const char* name) {
+  table(name, option_header, [] {
+    (for_each_row<Structs>([](const auto& field, const auto& value) { print_option(field, value); }), ...);
+  });
+}
+
+template <class Struct>
+void attribute_table(const char* name) {
+  table(name, "| Attribute | Type |", [] {
+    for_each_row<Struct>(
+        [](const auto& field, const auto&) { fmt::print("| `{}` | {} |\n", field.key, stored_type(field)); });
+  });
+}
+
+void statistics_tables() {
+  const StepStats stats;
+  table("recording_statistics", "| Dataset | Shape | Type | Unit | Meaning |", [&] {
+    for_each_leaf(
+        [&](const auto& field, const auto& value) {
+          using Value = std::remove_cvref_t<decltype(value)>;
+          std::string doc = field.doc;
+          if constexpr (Worded<Value>) {
+            for (std::size_t i = 0; i < words<Value>.size(); ++i)
+              doc += fmt::format("{} {} {}", i == 0 ? ":" : ",", i, words<Value>[i]);
+          }
+          fmt::print("| `statistics/{}` | (F) | {} | {} | {} |\n", field.key,
+                     Worded<Value> ? "uint8" : stored_type(field), field.unit, doc);
+        },
+        stats);
+  });
+  table("json_stats", "| Key | Unit | Meaning |", [&] {
+    for_each_leaf([&](const auto& field,
+                      const auto&) { fmt::print("| `{}` | {} | {} |\n", field.key, field.unit, field.doc); },
+                  stats);
+  });
+}
+
+/// The type and the width of a member of a record in a recording.
+template <class Value>
+std::pair<const char*, int> stored_as() {
+  if constexpr (std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::array<double, 3>>)
+    return {"float64", 3};
+  else if constexpr (std::is_same_v<Value, std::array<std::uint32_t, 2>>)
+    return {"uint32", 2};
+  else if constexpr (std::is_same_v<Value, double>)
+    return {"float64", 1};
+  else if constexpr (std::is_same_v<Value, std::uint64_t>)
+    return {"uint64", 1};
+  else if constexpr (std::is_same_v<Value, std::uint32_t> || std::is_same_v<Value, ObjectId>)
+    return {"uint32", 1};
+  else
+    return {"uint8", 1};
+}
+
+const char* unit_of(const Role& role, const char* unit) {
+  switch (role.names) {
+    case Names::object:
+      return "objects";
+    case Names::triangle:
+      return "triangles";
+    case Names::vertex:
+      return "vertices";
+    case Names::element:
+      return "vertices or triangles";
+    case Names::rows:
+      return role.side == 0 ? "rows" : "vertices";
+    case Names::first_row:
+      return "rows";
+    default:
+      return unit;
+  }
+}
+
+void print_dataset(const std::string& name, std::pair<const char*, int> type, const char* unit,
+                   const std::string& doc) {
+  const std::string shape = type.second == 1 ? "(rows)" : fmt::format("(rows, {})", type.second);
+  fmt::print("| `{}` | {} | {} | {} | {} |\n", name, shape, type.first, unit, doc);
+}
+
+/// The datasets of a record; a feature has two.
+template <class Row, class Value>
+void print_datasets(const std::string& group, const Field<Row, Value>& field) {
+  const Role& role = field.role;
+  std::string name = field.key, doc = field.doc;
+  if (role.names == Names::object) name = std::string("object_") + role.side;
+  if (role.names == Names::first_row)
+    doc += fmt::format(": a row of `{}`, from the first one of the frame", role.list);
+  if (role.names == Names::element) doc += ": v v for a vertex, the two vertices for an edge, t t for a face";
+  if (role.names == Names::weights) doc += ": 1 0 0 for a vertex, 1−s s 0 for an edge, three for a face";
+  if constexpr (Worded<Value>) {
+    for (std::size_t i = 0; i < words<Value>.size(); ++i)
+      doc += fmt::format("{} {} {}", i == 0 ? ":" : ",", i, words<Value>[i]);
+  }
+  if (std::is_same_v<Value, Feature>) doc += ": 0 vertex, 1 edge, 2 face";
+  if (std::is_same_v<Value, bool>) doc += ": 0 no, 1 yes";
+  print_dataset(group + "/" + name, stored_as<Value>(), unit_of(role, field.unit), doc);
+  if (std::is_same_v<Value, Feature>)
+    print_dataset(group + "/" + name.insert(std::string_view("feature").size(), "_index"), {"uint8", 1}, "",
+                  "Index of this part: the corner, or the corner where the edge starts");
+}
+
+void lists_table() {
+  table("recording_lists", "| Dataset | Shape | Type | Unit | Meaning |", [] {
+    for_each_list([]<class Row>(const ResultList<Row>& list, auto) {
+      const std::string group = list.name;
+      fmt::print("| `{}/end` | (F) | uint64 | rows | a row is: {} |\n", group, list.doc);
+      if constexpr (Described<Row>)
+        for_each_field<Row>([&](const auto& field) { print_datasets(group, field); });
+      else
+        print_dataset(group + "/" + list.value, stored_as<Row>(), unit_of(list.role, list.unit), "");
+    });
+  });
+}
+
+constexpr const char* scalars_of_sections[] = {"u8", "u32", "f32", "f64"};
+constexpr const char* arrays_of_sections[] = {"Uint8Array", "Uint32Array", "Float32Array", "Float64Array"};
+
+std::vector<std::string> kinds_of(const viewer::SectionForm& form, std::string_view quote) {
+  std::vector<std::string> kinds;
+  for (std::size_t kind = 1; kind < std::size(viewer::names_of_message_kinds); ++kind) {
+    if ((form.kinds >> kind & 1) != 0)
+      kinds.push_back(fmt::format("{0}{1}{0}", quote, viewer::names_of_message_kinds[kind]));
+  }
+  return kinds;
+}
+
+void sections_table() {
+  table("protocol_sections", "| tag | name | element | in |", [] {
+    for (const viewer::SectionForm& form : viewer::section_forms) {
+      const std::string width = form.width == 1   ? ""
+                                : form.width == 0 ? " × names"
+                                                  : fmt::format(" × {}", form.width);
+      fmt::print("| {} | `{}` | {}{}: {} | {}{}{}{} |\n", static_cast<std::uint32_t>(form.tag), form.name,
+                 scalars_of_sections[static_cast<std::size_t>(form.scalar)], width, form.element,
+                 fmt::join(kinds_of(form, ""), ", "), form.is_of_object ? "; one per object" : "",
+                 *form.when == 0 ? "" : "; ", form.when);
+    }
+  });
+}
+
+template <class... Records>
+void record_table(const char* name) {
+  table(name, "| Record | Key | Unit | Meaning |", [] {
+    const auto rows = []<class Record>(const Record&) {
+      for_each_field<Record>([](const auto& field) {
+        if (field.role.names == Names::rows || field.role.names == Names::first_row) return;
+        fmt::print("| {} | `{}` | {} | {} |\n", Description<Record>::name, field.key,
+                   unit_of(field.role, field.unit), field.doc);
+      });
+    };
+    (rows(Records{}), ...);
+  });
+}
+
+std::set<std::string> split(const std::string& columns) {
+  std::set<std::string> names;
+  std::istringstream stream(columns);
+  for (std::string name; std::getline(stream, name, ',');) names.insert(name);
+  return names;
+}
+
+void csv_table() {
+  table("json_csv", "| Contacts | Columns | With `--contact-details` also |", [] {
+    for (std::size_t i = 1; i < set_words<ContactKinds>.size(); ++i) {
+      const auto kind = static_cast<ContactKinds>(1u << (i - 1));
+      const std::string columns = csv_heading(kind, false);
+      std::vector<std::string> details;
+      std::ranges::set_difference(split(csv_heading(kind, true)), split(columns),
+                                  std::back_inserter(details));
+      fmt::print("| {} | `{}` | `{}` |\n", set_words<ContactKinds>[i], columns, fmt::join(details, ","));
+    }
+  });
+}
+
+}  // namespace
+
+void print_sections() {
+  fmt::print(
+      "// `make docs` writes this file from viewer/session/messages/sections.hpp.\n\n"
+      "export interface Form {{\n  name: string;\n"
+      "  array: Uint8ArrayConstructor | Uint32ArrayConstructor | Float32ArrayConstructor | "
+      "Float64ArrayConstructor;\n"
+      "  /** Numbers per element; 0 when the scene determines it. */\n  width: number;\n"
+      "  kinds: readonly string[];\n  perObject: boolean;\n}}\n\n");
+  std::vector<std::string> kinds;
+  for (const char* name : viewer::names_of_message_kinds) kinds.push_back(fmt::format("\"{}\"", name));
+  fmt::print("export const KINDS = [{}] as const;\n\nexport const FORMS = {{\n", fmt::join(kinds, ", "));
+  for (const viewer::SectionForm& form : viewer::section_forms)
+    fmt::print("  {}: {{ name: \"{}\", array: {}, width: {}, kinds: [{}], perObject: {} }},\n",
+               static_cast<std::uint32_t>(form.tag), form.name,
+               arrays_of_sections[static_cast<std::size_t>(form.scalar)], form.width,
+               fmt::join(kinds_of(form, "\""), ", "), form.is_of_object);
+  fmt::print("}} as const satisfies Record<number, Form>;\n");
+}
+
+void print_description_tables() {
+  attribute_table<SceneOptions>("recording_scene_options");
+  attribute_table<ObjectOptions>("recording_object_options");
+  lists_table();
+  sections_table();
+  statistics_tables();
+  record_table<Manifold, ManifoldPoint>("json_manifolds");
+  csv_table();
+  option_table<ObjectOptions>("scene_object_options");
+  option_table<CoordinateConversion>("scene_coordinate_options");
+  table("scene_simulation_options", option_header, [] {
+    const SimulationOptions defaults;
+    for_each_field<SimulationOptions>([&]<class Value>(const Field<SimulationOptions, Value>& field) {
+      if constexpr (is_in_tables<Value>) print_option(field, defaults.*field.member);
+    });
+  });
+  option_table<SceneOptions>("scene_detection_options");
+  option_table<WaveMotion>("scene_wave_options");
+  option_table<MassSpringMotion>("scene_mass_spring_options");
+  option_table<RigidMotion>("scene_rigid_options");
+  table("scene_response_options", option_header, [] {
+    for_each_row<ContactResponse>([](const auto& field, const auto& value) { print_option(field, value); });
+  });
+  table("protocol_settings", "| Key | Default |", [] {
+    const auto row = [](const auto& field, const auto& value) {
+      if (viewer::is_setting(field)) fmt::print("| `{}` | {} |\n", field.key, default_value(field, value));
+    };
+    for_each_row<SceneOptions>(row);
+    for_each_row<ObjectOctreeOptions>(row);
+  });
+}
+
+}  // namespace supple::cli

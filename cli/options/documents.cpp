@@ -1,0 +1,221 @@
+#include "options/documents.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "options/description_tables.hpp"
+#include "supple/version.hpp"
+
+namespace supple::cli {
+namespace {
+
+std::vector<const CLI::App*> commands_of(const CLI::App& program) {
+  return program.get_subcommands([](const CLI::App*) { return true; });
+}
+
+bool is_documented(const CLI::Option* option) {
+  return option->get_positional() || !option->get_group().empty();
+}
+
+/// Replaces every `from`.
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// `--threads N`, or the name of a positional.
+std::string spelling(const CLI::Option* option) {
+  if (option->get_positional()) return fmt::format("{}...", option->get_name(true));
+  const std::string names = replaced(option->get_name(false, true), ",", ", ");
+  if (option->get_expected_max() == 0) return names;
+  return fmt::format("{} {}", names, option->get_type_name());
+}
+
+/// `[OPTIONS] MESH...|SCENE.toml`
+std::string arguments_of(const CLI::App& command) {
+  std::string inputs;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_positional()) inputs = option->get_name(true);
+  }
+  inputs.insert(std::min(inputs.find('|'), inputs.size()), "...");
+  return "[OPTIONS] " + inputs;
+}
+
+/// An option that several commands have with the same description, which the documents have once.
+struct SharedOption {
+  const CLI::Option* option = nullptr;
+  std::vector<std::string> commands;
+};
+
+bool are_same(const CLI::Option* option, const CLI::Option* other) {
+  return spelling(option) == spelling(other) && option->get_description() == other->get_description();
+}
+
+/// In the order of their first occurrence.
+std::vector<SharedOption> shared_options(const CLI::App& program) {
+  std::vector<SharedOption> all;
+  for (const CLI::App* command : commands_of(program)) {
+    for (const CLI::Option* option : command->get_options()) {
+      if (!is_documented(option) || option->get_positional()) continue;
+      const auto known = std::find_if(all.begin(), all.end(), [&](const SharedOption& shared) {
+        return are_same(shared.option, option);
+      });
+      SharedOption& shared = known == all.end() ? all.emplace_back(SharedOption{option, {}}) : *known;
+      shared.commands.push_back(command->get_name());
+    }
+  }
+  std::erase_if(all, [](const SharedOption& shared) { return shared.commands.size() == 1; });
+  return all;
+}
+
+bool is_shared(const CLI::Option* option, const std::vector<SharedOption>& all) {
+  return std::any_of(all.begin(), all.end(),
+                     [&](const SharedOption& shared) { return are_same(shared.option, option); });
+}
+
+std::string markdown_spelling(const CLI::Option* option) {
+  return replaced(spelling(option), "|", "\\|");
+}
+
+void print_markdown_options(const CLI::App& app, const std::vector<SharedOption>& shared) {
+  std::string names;
+  fmt::print("| Option | Meaning |\n|---|---|\n");
+  for (const CLI::Option* option : app.get_options()) {
+    if (!is_documented(option)) continue;
+    if (is_shared(option, shared))
+      names += fmt::format("{}`{}`", names.empty() ? "" : ", ",
+                           replaced(option->get_name(false, true), ",", ", "));
+    else
+      fmt::print("| `{}` | {} |\n", markdown_spelling(option), option->get_description());
+  }
+  fmt::print("| [also](#options-of-several-commands) | {} |\n\n", names);
+}
+
+void print_shared_markdown_options(const std::vector<SharedOption>& all) {
+  fmt::print(
+      "\n## Options of several commands\n\n[Options](options.md) has the ranges and the keys of scene "
+      "files.\n\n"
+      "| Option | Meaning | Commands |\n|---|---|---|\n");
+  for (const SharedOption& shared : all)
+    fmt::print("| `{}` | {} | {} |\n", markdown_spelling(shared.option), shared.option->get_description(),
+               fmt::join(shared.commands, ", "));
+}
+
+/// The footer is `Examples:` with indented lines, optionally followed by a paragraph.
+void print_markdown_footer(const std::string& footer) {
+  const std::size_t end_of_examples = footer.find("\n\n");
+  const std::string_view examples = std::string_view(footer).substr(0, end_of_examples);
+  fmt::print("```text\n{}\n```\n", examples.substr(examples.find('\n') + 1));
+  if (end_of_examples != std::string::npos) fmt::print("\n{}\n", footer.substr(end_of_examples + 2));
+}
+
+void print_markdown(const CLI::App& program) {
+  fmt::print(
+      "# The command line\n\n`make docs` writes this page from the options of the program. `--help` and the "
+      "manual page have\nthe same content.\n\n{}\n\n",
+      program.get_description());
+  print_markdown_footer(program.get_footer());
+  const std::vector<SharedOption> shared = shared_options(program);
+  for (const CLI::App* command : commands_of(program)) {
+    fmt::print("\n## supple {}\n\n{}.\n\n`supple {} {}`\n\n", command->get_name(), command->get_description(),
+               command->get_name(), arguments_of(*command));
+    print_markdown_options(*command, shared);
+    print_markdown_footer(command->get_footer());
+  }
+  print_shared_markdown_options(shared);
+}
+
+std::string upper_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Escapes text for roff: a leading dot or quote is not a request, and hyphens of options stay hyphens.
+std::string roff(const std::string& text) {
+  std::string escaped;
+  bool line_start = true;
+  for (const char c : text) {
+    if (line_start && (c == '.' || c == '\'')) escaped += "\\&";
+    if (c == '\\')
+      escaped += "\\e";
+    else if (c == '-')
+      escaped += "\\-";
+    else
+      escaped += c;
+    line_start = c == '\n';
+  }
+  return escaped;
+}
+
+void print_roff_footer(const std::string& footer) {
+  const std::size_t end_of_examples = footer.find("\n\n");
+  const std::string examples = footer.substr(0, end_of_examples);
+  fmt::print(".nf\n{}\n.fi\n", roff(examples.substr(examples.find('\n') + 1)));
+  if (end_of_examples != std::string::npos) fmt::print(".PP\n{}\n", roff(footer.substr(end_of_examples + 2)));
+}
+
+void print_roff_option(const CLI::Option* option) {
+  fmt::print(".TP\n.B {}\n{}\n", roff(spelling(option)), roff(option->get_description()));
+}
+
+void print_man(const CLI::App& program) {
+  fmt::print(".TH SUPPLE 1 \"\" \"supple {}\" \"User Commands\"\n", SUPPLE_VERSION);
+  fmt::print(
+      ".SH NAME\nsupple \\- find every collision between deforming triangle meshes, exactly\n.SH SYNOPSIS\n");
+  for (const CLI::App* command : commands_of(program))
+    fmt::print(".B supple {}\n{}\n.br\n", command->get_name(), arguments_of(*command));
+  fmt::print(
+      ".SH DESCRIPTION\n{}\nMeshes are OBJ, OFF, PLY, STL, glTF, 3MF, Gmsh, VTK, TetGen or Medit files, or "
+      "FBX, "
+      "COLLADA and others that Assimp reads; scene files are TOML, recordings HDF5.\n",
+      roff(program.get_description()));
+  const std::vector<SharedOption> shared = shared_options(program);
+  for (const CLI::App* command : commands_of(program)) {
+    fmt::print(".SH SUPPLE {}\n{}.\n", upper_case(command->get_name()), roff(command->get_description()));
+    std::string names;
+    for (const CLI::Option* option : command->get_options()) {
+      if (!is_documented(option)) continue;
+      if (is_shared(option, shared))
+        names += fmt::format("{}{}", names.empty() ? "" : ", ",
+                             replaced(option->get_name(false, true), ",", ", "));
+      else
+        print_roff_option(option);
+    }
+    fmt::print(".PP\nAlso the options of several commands (below): {}\n", roff(names));
+    fmt::print(".SS Examples\n");
+    print_roff_footer(command->get_footer());
+  }
+  fmt::print(".SH OPTIONS OF SEVERAL COMMANDS\n");
+  for (const SharedOption& each : shared) print_roff_option(each.option);
+  fmt::print(
+      ".SH EXIT STATUS\n"
+      ".TP\n.B 0\nSuccess.\n"
+      ".TP\n.B 1\n\\-\\-fail\\-on\\-contact: something touches. diff: the recordings differ.\n"
+      ".TP\n.B 2\nUsage or input error, reported in one line on standard error. simulate: the motion "
+      "blew up. \\-\\-fail\\-on\\-contact: nothing touches, but something was not tested.\n"
+      ".TP\n.B 3\n\\-\\-verify: brute force gives a different result. ccd\\-queries: an answer is false.\n"
+      ".TP\n.B 130, 143\nA command was interrupted by SIGINT or SIGTERM; its files are whole and say that "
+      "they "
+      "are truncated.\n");
+}
+
+}  // namespace
+
+void print_document(const CLI::App& program, const std::string& name) {
+  if (name == "markdown") return print_markdown(program);
+  if (name == "man") return print_man(program);
+  if (name == "tables") return print_description_tables();
+  if (name == "sections") return print_sections();
+  throw CLI::ValidationError("--generate",
+                             fmt::format("'{}' is not one of man, markdown, sections, tables", name));
+}
+
+}  // namespace supple::cli

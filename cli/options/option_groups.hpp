@@ -1,0 +1,35 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "options/option_kinds.hpp"
+#include "options/options.hpp"
+
+// Options that several commands have.
+namespace supple::cli {
+
+/// Welding, where objects are not tested for contacts.
+void add_weld(CLI::App& app, viewer::Overrides<ObjectOptions>& objects);
+CLI::Option* add_max_contacts(CLI::App& app, RunLimits& limits, const char* description);
+CLI::Option* add_time_limit(CLI::App& app, RunLimits& limits);
+/// Adds the options of the octree of each object, and those of its contacts when objects are tested.
+void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested);
+/// The options that have an effect on the answer of a single query.
+void add_impact_options(CLI::App& app, ImpactOptions& impact);
+void add_parts(CLI::App& app, bool& parts, const char* group);
+CLI::Option* add_frames(CLI::App& app, std::optional<std::uint64_t>& frames, const char* description);
+void add_kind(CLI::App& app, std::optional<QueryKind>& kind);
+void add_conversion(CLI::App& app, CoordinateConversion& conversion);
+/// Adds the inputs: meshes, a scene file, a recording, or frames.
+void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence, MeshReading& reading);
+/// Adds every option of the detection. A page has a layer instead of `--colliding-vertices`.
+void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences,
+                           bool of_page = false);
+void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences);
+void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& dependences);
+
+}  // namespace supple::cli

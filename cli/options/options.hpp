@@ -1,0 +1,160 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "inputs/reading.hpp"
+#include "options/json_content.hpp"
+#include "query/query_file.hpp"
+#include "session/overrides.hpp"
+#include "session/session.hpp"
+#include "supple/option_descriptions.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace supple::cli {
+
+struct Dependence;
+
+/// Questions of `supple query`.
+enum class SceneQuery : std::uint8_t { closest, inside, rays, distance };
+
+}  // namespace supple::cli
+
+template <>
+inline constexpr std::array supple::words<supple::cli::SceneQuery>{"closest", "inside", "rays", "distance"};
+
+namespace supple::cli {
+
+/// The method that finds contacts.
+struct MethodOptions {
+  SceneOptions scene;           ///< the options of the input or the defaults, replaced by the given options
+  bool root_is_border = false;  ///< the root of the scene octree is given as the border of the scene
+  viewer::Overrides<SceneOptions> given_scene;
+  viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
+  bool parts = false;                              ///< each connected part is an object
+};
+
+/// What ends a run before it is complete. The results so far are written and marked as truncated.
+struct RunLimits {
+  std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
+  std::optional<double> seconds{};  ///< of wall-clock time, without reading the input
+};
+
+/// The options of all commands that find and report contacts.
+struct DetectionOptions : MethodOptions {
+  RunLimits limits;
+  bool verify = false;
+  bool fail_on_contact = false;
+  bool quiet = false;
+  JsonContent json_content;
+  std::string json, csv;  ///< empty: none; "-": standard output
+};
+
+/// Options of `supple detect`.
+struct DetectOptions : DetectionOptions {
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
+  bool sequence = false;            ///< the inputs are frames of one object
+  MeshReading reading;
+  std::optional<std::uint64_t> frames;
+};
+
+/// Options of `supple simulate`.
+struct SimulateOptions : DetectionOptions {
+  std::string input;  ///< a scene file
+  std::optional<std::uint64_t> frames;
+  std::optional<double> seconds;  ///< simulated; excludes `frames`
+  std::optional<std::uint64_t> seed;
+  std::optional<double> time_step;
+  std::string record;  ///< a file; empty: none
+};
+
+/// Options of `supple view`.
+struct ViewOptions : MethodOptions {
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
+  bool sequence = false;            ///< the inputs are frames of one object
+  MeshReading reading;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> time_step;
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;  ///< 0: any free port
+  bool open_browser = true;
+  viewer::MemoryBudget budget;
+  std::string page_file;  ///< file to write instead of serving; empty: serve
+};
+
+/// Options of `supple info`.
+struct InfoOptions {
+  std::vector<std::string> inputs;
+  CoordinateConversion conversion;
+  viewer::Overrides<SceneOptions> given_scene;  ///< only the bounding volume
+  viewer::Overrides<ObjectOptions> given_objects;
+  bool parts = false;  ///< each connected part is an object
+  std::string json;
+};
+
+/// Options of `supple query`.
+struct QueryOptions {
+  SceneQuery kind = SceneQuery::closest;
+  std::string file;                 ///< of points or rays; none for distances
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
+  CoordinateConversion conversion;
+  viewer::Overrides<SceneOptions> given_scene;     ///< only the number of threads
+  viewer::Overrides<ObjectOptions> given_objects;  ///< only welding
+  RunLimits limits;
+  double max_distance = std::numeric_limits<double>::infinity();
+  bool signed_distance = false;
+  bool all_hits = false;
+  bool verify = false;
+  bool quiet = false;
+  std::string json;
+};
+
+/// Options of `supple ccd-queries`.
+struct CcdQueriesOptions {
+  std::vector<std::string> inputs;   ///< query files or patterns
+  std::vector<std::string> answers;  ///< none, or one for each query file
+  std::optional<QueryKind> kind;     ///< without a value: from the paths
+  ImpactOptions impact;
+  bool verify = false;
+  bool list_false = false;
+  bool quiet = false;
+  bool json_stats = true;
+  std::string json;
+};
+
+/// Options of `supple diff`.
+struct DiffOptions {
+  std::vector<std::string> recordings;  ///< two
+  double tolerance = 0;
+  bool quiet = false;
+  std::string json;
+};
+
+struct CommandLine {
+  enum class Command { detect, simulate, view, info, query, ccd_queries, diff, experiment, exit };
+  Command command = Command::exit;
+  int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
+  DetectOptions detect;
+  SimulateOptions simulate;
+  ViewOptions view;
+  InfoOptions info;
+  QueryOptions query;
+  CcdQueriesOptions ccd_queries;
+  DiffOptions diff;
+};
+
+/// Prints help, version and generated documents to standard output, and a usage error as one line to standard
+/// error. The program of the experiments adds their options to the command `experiment`.
+CommandLine parse_command_line(
+    int argument_count, const char* const* arguments,
+    const std::function<void(CLI::App& experiment, std::vector<Dependence>& dependences)>& add_options = {});
+
+}  // namespace supple::cli

@@ -1,0 +1,231 @@
+#include "reports/json_report.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "inputs/inputs.hpp"
+#include "reports/node_pair_report.hpp"
+#include "reports/record_json.hpp"
+#include "reports/result_json.hpp"
+#include "supple/difference_descriptions.hpp"
+#include "supple/option_descriptions.hpp"
+#include "supple/version.hpp"
+
+namespace supple::cli {
+namespace {
+
+/// Writes all options except those of the machine.
+template <class Options>
+void write_options(JsonWriter& json, const Options& options) {
+  json.key("options");
+  json.begin_object();
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        if (field.is_of_machine || std::string_view(field.key) == "name") return;
+        json.key(field.key);
+        viewer::write_value(json, field, value);
+      },
+      options);
+  json.end_object();
+}
+
+void write_faces(JsonWriter& json, const std::vector<Triangle>& triangles) {
+  json.key("faces");
+  json.begin_array();
+  for (const Triangle& triangle : triangles) {
+    json.begin_array();
+    for (const std::uint32_t vertex : triangle) json.value(vertex);
+    json.end_array();
+  }
+  json.end_array();
+}
+
+void write_part(JsonWriter& json, const PartOfMesh& part) {
+  json.key("part");
+  json.begin_object();
+  json.member("of", part.mesh);
+  for (const auto& [name, ids] :
+       {std::pair("vertices", &part.vertices), std::pair("triangles", &part.triangles)}) {
+    json.key(name);
+    json.begin_array();
+    for (const std::uint32_t id : *ids) json.value(id);
+    json.end_array();
+  }
+  json.end_object();
+}
+
+void write_object_pairs(JsonWriter& json, const char* name, std::span<const ObjectPair> pairs) {
+  json.key(name);
+  json.begin_array();
+  for (const ObjectPair& pair : pairs) json.pair(pair.a.index, pair.b.index);
+  json.end_array();
+}
+
+/// `stay` is left out: it follows from earlier frames and would repeat every lasting pair in every frame.
+void write_events(JsonWriter& json, const char* name, const PairEvents& events) {
+  json.key(name);
+  json.begin_object();
+  write_object_pairs(json, "begin", events.begin);
+  write_object_pairs(json, "end", events.end);
+  json.end_object();
+}
+
+void write_untested(JsonWriter& json, const Frame& frame) {
+  json.key("untested");
+  json.begin_array();
+  for (const UntestedKind& untested : frame.result.untested) {
+    json.begin_object();
+    write_fields(json, untested);
+    json.end_object();
+  }
+  for (const ObjectId object : frame.turned) {
+    json.begin_object();
+    json.member("kind", word_of(ContactKinds::continuous));
+    json.member("reason", "half_turn");
+    json.member("object", std::uint64_t{object.index});
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void write_stats(JsonWriter& json, const Frame& frame) {
+  json.key("stats");
+  json.begin_object();
+  if (frame.simulated) json.member("motion_seconds", frame.simulated->motion_seconds);
+  viewer::write_members(json, frame.result.stats);
+  json.end_object();
+}
+
+/// Two counts of the brute force, and the differences from it.
+template <class Row>
+void write_verify(JsonWriter& json, const char* name, std::pair<const char*, std::uint64_t> checked,
+                  std::pair<const char*, std::uint64_t> found, const std::vector<Row>& differences) {
+  json.key(name);
+  json.begin_object();
+  json.member(checked.first, checked.second);
+  json.member(found.first, found.second);
+  write_records(json, "differences", std::span<const Row>(differences));
+  json.end_object();
+}
+
+}  // namespace
+
+JsonReport::JsonReport(const std::string& file_name, const Input& input, const Scene& scene,
+                       const JsonContent& content)
+    : json_(file_name), input_(input), scene_(scene), content_(content) {
+  json_.begin_object();
+  json_.member("supple", std::string(SUPPLE_VERSION));
+  if (content_.stats) write_options(json_, input_.simulation.scene);
+  json_.key("objects");
+  json_.begin_array();
+  const std::vector<ObjectId> objects = scene.objects();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    json_.begin_object();
+    json_.member("name", scene.name(objects[i]));
+    json_.member("vertices", std::uint64_t{scene.vertex_count(objects[i])});
+    json_.member("triangles", std::uint64_t{scene.triangle_count(objects[i])});
+    if (content_.stats) write_options(json_, input_.objects[i].options);
+    if (content_.faces) write_faces(json_, input_.objects[i].mesh.triangles);
+    if (input_.objects[i].part) write_part(json_, *input_.objects[i].part);
+    json_.end_object();
+  }
+  json_.end_array();
+  json_.key("frames");
+  json_.begin_array();
+}
+
+/// Writes the files of a frame.
+void JsonReport::add_files(std::uint64_t frame) {
+  bool is_first = true;
+  for (std::size_t i = 0; i < input_.objects.size(); ++i) {
+    const auto& motion = input_.objects[i].motion;
+    const auto* const sequence = motion ? std::get_if<FrameSequence>(&*motion) : nullptr;
+    if (!sequence) continue;
+    if (std::exchange(is_first, false)) {
+      json_.key("files");
+      json_.begin_array();
+    }
+    json_.begin_object();
+    json_.member("object", std::uint64_t{i});
+    json_.member("file", sequence->file_at(frame).string());
+    json_.end_object();
+  }
+  if (!is_first) json_.end_array();
+}
+
+void JsonReport::add(const Frame& frame) {
+  const DetectResult& result = frame.result;
+  const SceneOptions& options = input_.simulation.scene;
+  json_.begin_object();
+  json_.member("frame", frame.number);
+  if (frame.simulated) json_.member("time", frame.simulated->time);
+  add_files(frame.number);
+  json_.member("truncated", result.truncated);
+  is_truncated_ = is_truncated_ || result.truncated;
+  write_untested(json_, frame);
+  write_object_pairs(json_, "object_pairs", result.object_pairs);
+  const bool continuous = contains(options.contacts, ContactKinds::continuous);
+  const bool both = continuous && contains(options.contacts, ContactKinds::intersection);
+  const bool at_rest =
+      options.contacts == ContactKinds::none || contains(options.contacts, ContactKinds::intersection);
+  const bool proximity = contains(options.contacts, ContactKinds::proximity);
+  if (continuous) {
+    write_continuous_groups(json_, result, !options.impact.exact || options.max_exact_bits < most_exact_bits);
+    if (content_.contact_details)
+      write_records(json_, both ? "continuous_contacts" : "contacts", result.continuous_contacts);
+  }
+  if (at_rest) write_intersections(json_, result, {content_.contact_details, options.contact_points});
+  if (proximity) {
+    write_proximity_groups(json_, result, options.proximity_listing);
+    if (content_.contact_details) write_records(json_, "proximity_pairs", result.proximity_pairs);
+  }
+  const bool penetration = contains(options.contacts, ContactKinds::penetration);
+  if (penetration) write_penetration(json_, result, content_.contact_details);
+  if (options.manifolds) write_manifolds(json_, result);
+  if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
+  if (content_.node_pairs) write_node_pairs(json_, scene_, *content_.node_pairs);
+  json_.key("events");
+  json_.begin_object();
+  write_events(json_, "volumes", result.volume_events);
+  if (options.comparison.colliding_vertices) write_events(json_, "narrow_phase", result.narrow_phase_events);
+  write_events(json_, "contacts", result.contact_events);
+  if (proximity) write_events(json_, "proximity", result.proximity_events);
+  if (penetration) write_events(json_, "penetration", result.penetration_events);
+  json_.end_object();
+  write_records(json_, "non_finite", result.non_finite_vertices);
+  if (frame.verify) {
+    const VerifyReport& report = *frame.verify;
+    if (continuous)
+      write_verify(json_, both ? "continuous_verify" : "verify",
+                   {"element_pairs_checked", report.element_pairs_checked},
+                   {"touching_element_pairs", report.touching_element_pairs}, report.continuous_differences);
+    if (contains(options.contacts, ContactKinds::intersection))
+      write_verify(json_, "verify", {"triangle_pairs_checked", report.triangle_pairs_checked},
+                   {"intersecting_pairs", report.intersecting_pairs}, report.differences);
+    if (proximity)
+      write_verify(json_, "proximity_verify", {"element_pairs_checked", report.proximity_pairs_checked},
+                   {"near_pairs", report.near_pairs}, report.proximity_differences);
+    if (penetration)
+      write_verify(json_, "penetration_verify",
+                   {"vertex_triangle_pairs_checked", report.vertex_triangle_pairs_checked},
+                   {"inside_vertices", report.inside_vertices}, report.penetration_differences);
+  }
+  if (content_.stats) write_stats(json_, frame);
+  json_.end_object();
+  json_.flush();
+}
+
+void JsonReport::finish(bool was_ended) {
+  json_.end_array();
+  json_.member("truncated", was_ended || is_truncated_);
+  json_.end_object();
+  json_.close();
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,156 @@
+#include "reports/reports.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "base/exit_status.hpp"
+#include "base/text.hpp"
+#include "inputs/inputs.hpp"
+#include "inputs/parts.hpp"
+#include "reports/node_pair_report.hpp"
+#include "supple/result_descriptions.hpp"
+
+namespace supple::cli {
+namespace {
+
+std::string describe(const Scene& scene, const Difference& d) {
+  return fmt::format("triangle {} of {} and triangle {} of {} {}", d.triangle_a,
+                     one_line(scene.name(d.object_a)), d.triangle_b, one_line(scene.name(d.object_b)),
+                     d.missed ? "intersect and were not reported" : "were reported and do not intersect");
+}
+
+const char* outcome_of(ContinuousDifference::Fault fault) {
+  switch (fault) {
+    case ContinuousDifference::Fault::missed:
+      return "touch and were not reported";
+    case ContinuousDifference::Fault::added:
+      return "were reported and do not touch";
+    case ContinuousDifference::Fault::late:
+      return "were reported with a time after they touch";
+    case ContinuousDifference::Fault::early:
+      break;
+  }
+  return "were reported with a time too long before they touch";
+}
+
+std::string describe(const Scene& scene, const ContinuousDifference& d) {
+  const auto [kind_a, kind_b] = feature_kinds(d.kind);
+  const auto numbers = [](const std::array<std::uint32_t, 2>& ids) {
+    return ids[0] == ids[1] ? fmt::format("{}", ids[0]) : fmt::format("{} {}", ids[0], ids[1]);
+  };
+  return fmt::format("{} {} of {} and {} {} of {} {}", word_of(kind_a), numbers(d.element_a),
+                     one_line(scene.name(d.object_a)), word_of(kind_b), numbers(d.element_b),
+                     one_line(scene.name(d.object_b)), outcome_of(d.fault));
+}
+
+const char* outcome_of(ProximityDifference::Fault fault) {
+  switch (fault) {
+    case ProximityDifference::Fault::missed:
+      return "are near and were not reported";
+    case ProximityDifference::Fault::added:
+      return "were reported and are not near";
+    case ProximityDifference::Fault::inexact:
+      break;
+  }
+  return "were reported with wrong features or an inaccurate distance";
+}
+
+std::string describe(const Scene& scene, const ProximityDifference& d) {
+  const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
+    const std::string numbers =
+        kind == FeatureKind::edge ? fmt::format("{} {}", ids[0], ids[1]) : fmt::format("{}", ids[0]);
+    return fmt::format("{} {} of {}", word_of(kind), numbers, one_line(scene.name(object)));
+  };
+  return fmt::format("{} and {} {}", named(d.kind_a, d.element_a, d.object_a),
+                     named(d.kind_b, d.element_b, d.object_b), outcome_of(d.fault));
+}
+
+const char* outcome_of(PenetrationDifference::Fault fault) {
+  switch (fault) {
+    case PenetrationDifference::Fault::missed:
+      return "is inside or on the surface of it and was not reported so";
+    case PenetrationDifference::Fault::added:
+      return "was reported as inside or on the surface of it and is not";
+    case PenetrationDifference::Fault::inexact:
+      break;
+  }
+  return "was reported with a triangle that is not the nearest or with an inaccurate depth";
+}
+
+std::string describe(const Scene& scene, const PenetrationDifference& d) {
+  return fmt::format("for {}: vertex {} of {} {}", one_line(scene.name(d.object_b)), d.vertex,
+                     one_line(scene.name(d.object_a)), outcome_of(d.fault));
+}
+
+void print_difference(const Scene& scene, std::uint64_t frame, const VerifyReport& report) {
+  const std::string first =
+      !report.continuous_differences.empty()  ? describe(scene, report.continuous_differences.front())
+      : !report.differences.empty()           ? describe(scene, report.differences.front())
+      : !report.proximity_differences.empty() ? describe(scene, report.proximity_differences.front())
+                                              : describe(scene, report.penetration_differences.front());
+  fmt::print(stderr, "supple: verify: frame {} has {} from brute force; the first: {}\n", frame,
+             counted(report.difference_count(), "difference"), first);
+}
+
+}  // namespace
+
+Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun)
+    : options_(options),
+      scene_(scene),
+      solid_parts_(describe_solid_parts(input)),
+      tested_(input, scene.options().contacts) {
+  if (options.json_content.node_pairs) check_node_pairs(input, *options.json_content.node_pairs);
+  if (!options.json.empty()) json_.emplace(options.json, input, scene, options.json_content);
+  if (!options.csv.empty()) csv_.emplace(options.csv, options.scene, options.json_content.contact_details);
+  if (!options.quiet && options.json != "-" && options.csv != "-")
+    text_.emplace(std::move(noun), input, scene);
+}
+
+void Reports::add(const Frame& frame) {
+  if (json_) json_->add(frame);
+  if (csv_) csv_->add(frame);
+  if (text_) text_->add(frame);
+  tested_.add(frame);
+  last_frame_ = frame.number;
+  if (frame.result.truncated) ++truncated_frames_;
+  touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty() ||
+             !frame.result.proximity_groups.empty() || !frame.result.penetration_groups.empty();
+  if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
+    print_difference(scene_, frame.number, *frame.verify);
+}
+
+void Reports::finish(bool was_ended) {
+  was_ended_ = was_ended;
+  if (json_) json_->finish(was_ended);
+  if (csv_) csv_->finish(was_ended || truncated_frames_ > 0);
+  if (truncated_frames_ > 0)
+    fmt::print(stderr, "supple: {} more contacts than --max-contacts {}; the results are truncated\n",
+               truncated_frames_ == 1 ? "a frame has" : counted(truncated_frames_, "frame") + " have",
+               options_.limits.max_contacts);
+  if (!text_) {
+    if (!options_.quiet && !is_failing()) report_faults("warning");
+    return;
+  }
+  text_->print(scene_, tested_);
+  if (!solid_parts_.empty()) fmt::print("\n{}\n", solid_parts_);
+  if (const auto& objects = options_.json_content.node_pairs; objects && !was_ended)
+    print_node_pairs(scene_, *objects, last_frame_);
+}
+
+void Reports::report_faults(const char* what) const {
+  if (const std::vector<std::string> faults = tested_.faults(); !faults.empty())
+    fmt::print(stderr, "supple: {}: {}\n", what, fmt::join(faults, "; "));
+}
+
+int Reports::exit_status() const {
+  if (differed_) return exit_differences;
+  if (!is_failing()) return options_.fail_on_contact && touched_ ? exit_contact : exit_done;
+  report_faults("--fail-on-contact");
+  return was_ended_ || !tested_.faults().empty() ? exit_unusable : exit_done;
+}
+
+}  // namespace supple::cli

@@ -1,0 +1,151 @@
+#include "reports/tested_kinds.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/text.hpp"
+#include "inputs/inputs.hpp"
+#include "supple/topology.hpp"
+
+namespace supple::cli {
+namespace {
+
+struct NamedKind {
+  ContactKinds kind;
+  const char* name;
+};
+constexpr NamedKind kinds[] = {{ContactKinds::intersection, "intersections"},
+                               {ContactKinds::continuous, "continuous contacts"},
+                               {ContactKinds::proximity, "proximity"},
+                               {ContactKinds::penetration, "penetration"}};
+
+bool reads_lines(ContactKinds kind) {
+  return kind == ContactKinds::continuous || kind == ContactKinds::proximity;
+}
+
+}  // namespace
+
+void TestedKinds::add(const Frame& frame) {
+  ++frames_;
+  ContactKinds untested = ContactKinds::none;
+  for (const UntestedKind& entry : frame.result.untested) {
+    untested |= entry.kind;
+    reasons_[entry.kind] = entry.reason;
+  }
+  for (const auto& [kind, name] : kinds) {
+    if (contains(requested_, kind) && !contains(untested, kind)) tested_ |= kind;
+  }
+  if (frame.turned.empty()) return;
+  ++steps_with_turns_;
+  if (first_turn_) return;
+  first_turn_ = frame.number;
+  turned_ = frame.turned.front();
+}
+
+std::vector<std::string> TestedKinds::faults() const {
+  std::vector<std::pair<std::string, std::string>> reasons;  // names of kinds, and why they were not tested
+  bool is_nothing_tested = true;
+  for (const auto& [kind, name] : kinds) {
+    if (!contains(requested_, kind)) continue;
+    if (was_tested(kind)) {
+      is_nothing_tested = false;
+      continue;
+    }
+    const std::string reason =
+        frames_ == 0 ? "the run ended before its first result" : reason_in_words(kind, reasons_.at(kind));
+    if (!reasons.empty() && reasons.back().second == reason)
+      reasons.back().first += std::string(" and ") + name;
+    else
+      reasons.emplace_back(name, reason);
+  }
+  std::vector<std::string> faults;
+  for (const auto& [names, reason] : reasons) {
+    const bool is_all = is_nothing_tested && reasons.size() == 1;
+    faults.push_back(is_all ? "nothing was tested: " + reason
+                            : fmt::format("{} could not be tested: {}", names, reason));
+  }
+  if (first_turn_) {
+    faults.push_back(
+        fmt::format("in {}, first from frame {} to {}, objects turn by more than 120 degrees, first {}; "
+                    "continuous contacts follow straight paths, which are not this motion, so give frames "
+                    "that are closer together",
+                    counted(steps_with_turns_, "step"), *first_turn_ - 1, *first_turn_,
+                    one_line(input_.objects[turned_->index].mesh.name)));
+  }
+  return faults;
+}
+
+std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason) const {
+  switch (reason) {
+    case NothingToTest::no_objects:
+      return "there is no object";
+    case NothingToTest::no_elements: {
+      if (leaves_out_lines(kind))
+        return "no object has a triangle; lines and points take part in --contacts continuous and proximity";
+      return "no object has a triangle; give surfaces of triangles, not clouds of points";
+    }
+    case NothingToTest::not_finite:
+      return "every triangle has a vertex that is not finite; correct the coordinates";
+    case NothingToTest::no_solid:
+      return "no object is solid; --solid makes all objects solid, solid = true one object of a scene file";
+    case NothingToTest::no_motion: {
+      const auto& objects = input_.objects;
+      const bool are_frames =
+          objects.size() > 1 && std::all_of(objects.begin(), objects.end(), [&](const InputObject& object) {
+            return object.mesh.triangles == objects.front().mesh.triangles;
+          });
+      return are_frames && input_.scene_text.empty()
+                 ? "nothing moves; if the meshes are frames of one object, give --sequence"
+                 : "nothing moves; give frames of one object with --sequence, or a scene file with motion";
+    }
+    case NothingToTest::no_margin:
+      return "all margins are 0, which finds only what touches; give --margin";
+    case NothingToTest::one_object:
+      return advice_for_one_object(kind);
+    case NothingToTest::shared_vertex:
+      if (reads_lines(kind)) return "each two elements of the object share a vertex; give more objects";
+      return has_one_triangle() ? "there is only one triangle; give more objects"
+                                : "each two triangles of the object share a vertex; give --neighbours exact";
+    case NothingToTest::all_static:
+      return "all objects are static; let one of them move";
+    case NothingToTest::groups:
+      return "groups and masks exclude all pairs; change group or mask of an object";
+    case NothingToTest::filter:
+      break;
+  }
+  return "a filter excludes all pairs";
+}
+
+/// Whether an object has lines or points, which this kind does not read.
+bool TestedKinds::leaves_out_lines(ContactKinds kind) const {
+  return !reads_lines(kind) && std::ranges::any_of(input_.objects, [](const InputObject& object) {
+    return !object.mesh.edges.empty() || !object.mesh.points.empty();
+  });
+}
+
+/// Whether all objects together have one triangle that can touch something.
+bool TestedKinds::has_one_triangle() const {
+  std::size_t count = 0;
+  for (const InputObject& object : input_.objects) count += count_finite_triangles(object.mesh);
+  return count == 1;
+}
+
+std::string TestedKinds::advice_for_one_object(ContactKinds kind) const {
+  std::string reason = input_.objects.size() == 1 ? "there is only one object"
+                       : kind == ContactKinds::penetration || !reads_lines(kind)
+                           ? "only one object has a triangle of finite coordinates"
+                           : "only one object has elements of finite coordinates";
+  const bool needs_another = kind == ContactKinds::penetration || has_one_triangle();
+  reason += needs_another ? "; give another one" : "; --self tests it against itself";
+  if (leaves_out_lines(kind)) reason += "; lines and points take part in --contacts continuous and proximity";
+  const TriangleMesh& mesh = input_.objects.front().mesh;
+  if (input_.objects.size() != 1) return reason;
+  const std::uint64_t parts = compute_topology(mesh).components;
+  if (parts > 1)
+    reason += fmt::format(", --parts makes an object of each of its {} connected parts", grouped(parts));
+  return reason;
+}
+
+}  // namespace supple::cli

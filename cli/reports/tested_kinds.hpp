@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/report.hpp"
+
+namespace supple::cli {
+
+struct Input;
+
+/// Which kinds of contacts a run has tested: a kind counts as tested when one frame had something to test.
+class TestedKinds {
+ public:
+  TestedKinds(const Input& input, ContactKinds requested) : input_(input), requested_(requested) {}
+
+  void add(const Frame& frame);
+  bool was_tested(ContactKinds kind) const { return contains(tested_, kind); }
+  /// What was not tested, why, and how to test it: lines without a full stop.
+  std::vector<std::string> faults() const;
+
+ private:
+  std::string reason_in_words(ContactKinds kind, NothingToTest reason) const;
+  bool leaves_out_lines(ContactKinds kind) const;
+  bool has_one_triangle() const;
+  std::string advice_for_one_object(ContactKinds kind) const;
+
+  const Input& input_;
+  ContactKinds requested_, tested_ = ContactKinds::none;
+  std::uint64_t frames_ = 0;
+  std::map<ContactKinds, NothingToTest> reasons_;  // the last ones
+  std::uint64_t steps_with_turns_ = 0;
+  std::optional<std::uint64_t> first_turn_;  // frame
+  std::optional<ObjectId> turned_;           // in this frame
+};
+
+}  // namespace supple::cli

@@ -1,0 +1,83 @@
+#include "studies/shape_pair.hpp"
+
+#include <array>
+
+#include "supple/inspection.hpp"
+#include "supple/scene.hpp"
+#include "work.hpp"
+
+namespace supple::experiments {
+namespace {
+
+ObjectOptions regular(ObjectOctreeOptions octree) {
+  octree.build = ObjectOctreeBuild::regular;
+  return ObjectOptions{.octree = octree};
+}
+
+}  // namespace
+
+TriangleMesh turned(TriangleMesh mesh) {
+  // The quaternion (5, 1, 2, 2) / √34.
+  constexpr double w = 5, x = 1, y = 2, z = 2, n = w * w + x * x + y * y + z * z;
+  const std::array<Vec3d, 3> rows{
+      Vec3d{(n - 2 * (y * y + z * z)) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n},
+      Vec3d{2 * (x * y + w * z) / n, (n - 2 * (x * x + z * z)) / n, 2 * (y * z - w * x) / n},
+      Vec3d{2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (n - 2 * (x * x + y * y)) / n}};
+  const auto product = [](Vec3d row, Vec3d p) { return row.x * p.x + row.y * p.y + row.z * p.z; };
+  for (Vec3d& p : mesh.positions) p = {product(rows[0], p), product(rows[1], p), product(rows[2], p)};
+  return mesh;
+}
+
+TriangleMesh moved(TriangleMesh mesh, Vec3d offset) {
+  for (Vec3d& p : mesh.positions) p = p + offset;
+  return mesh;
+}
+
+PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
+                      int frames, std::uint32_t threads, BoundingVolume volume) {
+  SceneOptions options;
+  options.bounding_volume = volume;
+  options.contacts = ContactKinds::none;
+  options.threads = threads;
+  Scene scene(options);
+  const ObjectOptions object = regular(octree);
+  PairCost cost;
+  ObjectId id_a, id_b;
+  std::vector<double> builds;
+  do {
+    if (!builds.empty()) {
+      scene.remove(id_a);
+      scene.remove(id_b);
+    }
+    builds.push_back(seconds_of([&] {
+      id_a = scene.add(a, object);
+      id_b = scene.add(b, object);
+    }));
+  } while (builds.size() < 3 && builds.back() < 0.1);
+  cost.build_seconds = least(builds);
+  cost.octree_a = SceneInspector(scene).octree_statistics(id_a);
+  cost.octree_b = SceneInspector(scene).octree_statistics(id_b);
+  std::vector<double> refits, traversals;
+  std::array<std::vector<Vec3d>, 2> places_a{a.positions, moved(a, {0x1p-30, 0, 0}).positions},
+      places_b{b.positions, moved(b, {0, 0x1p-30, 0}).positions};
+  scene.detect();
+  for (int frame = 1; frame <= frames; ++frame) {
+    scene.set_positions(id_a, places_a[static_cast<std::size_t>(frame % 2)]);
+    scene.set_positions(id_b, places_b[static_cast<std::size_t>(frame % 2)]);
+    cost.stats = scene.detect().stats;
+    refits.push_back(cost.stats.refit_seconds);
+    traversals.push_back(cost.stats.traversal_seconds);
+  }
+  cost.refit_seconds = least(refits);
+  cost.traversal_seconds = least(traversals);
+  return cost;
+}
+
+NodePairList node_pairs_of(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree) {
+  Scene scene(SceneOptions{.contacts = ContactKinds::none});
+  const ObjectId id_a = scene.add(a, regular(octree)), id_b = scene.add(b, regular(octree));
+  scene.detect();
+  return SceneInspector(scene).node_pairs(id_a, id_b);
+}
+
+}  // namespace supple::experiments

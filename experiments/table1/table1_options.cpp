@@ -1,0 +1,79 @@
+#include "table1/table1_options.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "options/option_kinds.hpp"
+#include "table1/table1_scenes.hpp"
+
+namespace supple::experiments {
+
+Table1Scene mixed_scene(std::uint32_t objects, std::optional<double> size) {
+  return {Table1Scene::Source::mixed, fmt::format("table1_{}", objects), objects, size};
+}
+
+bool is_met(const cli::OptionNeed& need, const Table1Method& method) {
+  return std::any_of(method.volumes.begin(), method.volumes.end(), [&](auto volume) {
+    SceneOptions scene = method.scene;
+    scene.bounding_volume = volume;
+    return need.is_met(scene);
+  });
+}
+
+bool has_effect(const Table1Method& method, std::string_view key) {
+  const auto needs = cli::option_needs();
+  return std::all_of(needs.begin(), needs.end(),
+                     [&](const cli::OptionNeed& need) { return key != need.key || is_met(need, method); });
+}
+
+Table1Options default_table1_options(bool quick) {
+  constexpr double small_edge = 4;  // about the smallest cube in which the nine objects start
+  Table1Options options;
+  options.scenes = {mixed_scene(3),
+                    mixed_scene(6),
+                    mixed_scene(9),
+                    mixed_scene(9, small_edge),
+                    {Table1Scene::Source::built_in, "three_humans"}};
+  if (quick)
+    options.simulated_seconds = 10;
+  else
+    options.scenes.push_back({Table1Scene::Source::built_in, "three_bikes"});
+  return options;
+}
+
+std::vector<std::pair<std::string, std::string>> describe(const Table1Options& options) {
+  std::vector<std::string> scenes, volumes;
+  for (const Table1Scene& scene : options.scenes)
+    scenes.push_back(scene.size ? fmt::format("{} in a cube of {}", scene.name, *scene.size) : scene.name);
+  for (const BoundingVolume volume : options.method.volumes) volumes.push_back(cli::spelled(word_of(volume)));
+  std::vector<std::pair<std::string, std::string>> rows{
+      {"scenes", fmt::format("{}", fmt::join(scenes, ", "))},
+      {"hash of the scenes", fmt::format("{:016x}", hash_of(options))},
+      {"--bounding-volume", fmt::format("{}", fmt::join(volumes, ","))}};
+  for_each_option(
+      [&](const auto& field, const auto& value) {
+        if (has_effect(options.method, field.key))
+          rows.emplace_back(cli::flag_of(field.key), cli::spelled_value(field, value));
+      },
+      options.method);
+  if (options.method.root_is_border) {
+    rows.emplace_back("--scene-octree-root", "border");
+  } else if (const auto& root = options.method.scene.scene_octree.root) {
+    rows.emplace_back("--scene-octree-root",
+                      fmt::format("{},{},{},{}", root->corner.x, root->corner.y, root->corner.z, root->edge));
+  }
+  if (options.method.integrator)
+    rows.emplace_back("--integrator", cli::spelled(word_of(*options.method.integrator)));
+  rows.emplace_back("--runs", fmt::format("{}", options.runs));
+  rows.emplace_back("--seed", fmt::format("{}", options.seed));
+  rows.emplace_back("--seconds", fmt::format("{}", options.simulated_seconds));
+  if (options.wall_clock) {
+    rows.emplace_back("--wall-clock", fmt::format("{}", *options.wall_clock));
+    rows.emplace_back("--threads", fmt::format("{}", options.threads.value_or(1)));
+  }
+  return rows;
+}
+
+}  // namespace supple::experiments

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "options/option_needs.hpp"
+#include "supple/options.hpp"
+#include "supple/simulation_descriptions.hpp"
+
+namespace supple::experiments {
+
+/// A scene that the experiment runs.
+struct Table1Scene {
+  enum class Source { built_in, mixed, file };
+  Source source = Source::mixed;
+  std::string name;           ///< of a built-in scene, or the path of a scene file
+  std::uint32_t objects = 0;  ///< of a mixed scene: pawns, fish and rabbits in equal parts
+  /// Edge of the cube that reflects the objects, above 0; none: the border of the scene.
+  std::optional<double> size{};
+};
+
+/// The number of objects of a mixed scene, `table1_9`.
+Table1Scene mixed_scene(std::uint32_t objects, std::optional<double> size = {});
+
+/// How collisions are found. The defaults are the method of the paper.
+struct Table1Method {
+  std::vector<BoundingVolume> volumes{BoundingVolume::aabb, BoundingVolume::sphere};
+  /// All options but the bounding volume and the threads.
+  SceneOptions scene{.broad_phase = BroadPhaseMethod::octree,
+                     .scene_octree = {.expand_at = 2, .region_sphere_test = RegionSphereTest::grown_box},
+                     .contact_points = false,
+                     .comparison = {.colliding_vertices = true}};
+  ObjectOctreeOptions octree{.leaf_size = 1, .build = ObjectOctreeBuild::regular};  ///< of every object
+  bool root_is_border = false;  ///< the root of the scene octree is the cube around the border of each scene
+  std::optional<Integrator> integrator{};  ///< of every mass-spring body; none: that of the scene
+};
+
+/// Calls `visitor(field, value)` for each option of the method that has a description and that users choose,
+/// except the root of the scene octree, which may be `border`.
+/// `Method` is `Table1Method`, constant or not.
+template <class Visitor, class Method>
+void for_each_option(Visitor&& visitor, Method& method) {
+  for_each_leaf(
+      [&]<class Struct, class Value>(const Field<Struct, Value>& field, auto& value) {
+        if constexpr (std::is_same_v<Value, std::optional<RootCube>>)
+          return;
+        else if constexpr (std::is_same_v<Struct, SceneOctreeOptions> || std::is_same_v<Value, SphereFit> ||
+                           std::is_same_v<Value, BroadPhaseMethod>)
+          visitor(field, value);
+      },
+      method.scene);
+  for_each_leaf(
+      [&](const auto& field, auto& value) {
+        // Octrees are never rebuilt, because the counts of the narrow phase depend on the leaves.
+        if (std::string_view(field.key) != "rebuild_degraded") visitor(field, value);
+      },
+      method.octree);
+}
+
+/// Whether the condition is met with one of the volumes of the method.
+bool is_met(const cli::OptionNeed& need, const Table1Method& method);
+/// Whether the option with this key has an effect with one of the volumes of the method.
+bool has_effect(const Table1Method& method, std::string_view key);
+
+struct Table1Options {
+  std::vector<Table1Scene> scenes;
+  Table1Method method{};
+  std::uint32_t runs = 5;              ///< ≥ 1; run k has the seed `seed` + k
+  double simulated_seconds = 600;      ///< per run that is counted in simulated time; 0: no such runs
+  std::optional<double> wall_clock{};  ///< seconds of detection per run; none: no such runs
+  /// Parallel runs by steps, 0 for one per core, or threads of a run by the clock. Without a value: one run
+  /// per core, and one thread, so that times measure work.
+  std::optional<std::uint32_t> threads{};
+  std::uint64_t seed = 1;
+};
+
+/// The scenes of section 7: 3, 6 and 9 objects, three humans and three bikes; and 9 objects in a smaller
+/// cube. With `quick`, a small part of the experiment.
+Table1Options default_table1_options(bool quick);
+
+/// Every option that decides the results, as on the command line: `--broad-phase`, `octree`. Options without
+/// effect are left out. Throws as `read_scene` does.
+std::vector<std::pair<std::string, std::string>> describe(const Table1Options& options);
+
+}  // namespace supple::experiments

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/interruption.hpp"
+#include "base/output_file.hpp"
+#include "fit.hpp"
+#include "table.hpp"
+#include "table1/table1_options.hpp"
+
+namespace supple::experiments {
+
+/// Numbers of collisions that begin in one run.
+struct RunCounts {
+  std::uint64_t broad = 0;   ///< pairs of objects whose volumes begin to overlap
+  std::uint64_t narrow = 0;  ///< pairs whose octrees' leaves begin to overlap: the paper's output
+  std::uint64_t exact = 0;   ///< pairs whose triangles begin to intersect; 0 in runs by the clock
+  std::uint64_t steps = 0;
+  double detection_seconds = 0;  ///< of all steps, without the motion
+  double real_seconds = 0;       ///< of the whole run; only in runs by the clock
+  std::string failure{};         ///< why the motion failed; empty on success
+};
+
+/// One run of a scene, until `go_on(counts so far)` returns false. The counts are the same for any number of
+/// threads.
+RunCounts run_scene(const Table1Scene& scene, const Table1Method& method, BoundingVolume volume,
+                    std::uint64_t seed, std::uint32_t threads,
+                    const std::function<bool(const RunCounts&)>& go_on);
+
+/// All runs of one scene with one kind of volume.
+struct Runs {
+  Table1Scene scene;
+  bool is_first_size = true;  ///< no runs before these have the same scene in another size
+  std::uint64_t objects = 0;
+  std::optional<double> edge{};  ///< the longest of the border
+  BoundingVolume volume{};
+  double run_seconds = 0;  ///< of a run: simulated time, or time of detection
+  std::vector<RunCounts> counts{};
+
+  /// The numbers of the runs that did not break off.
+  std::vector<double> numbers(std::uint64_t RunCounts::*member) const;
+  Estimate estimate(std::uint64_t RunCounts::*member) const { return estimate_of(numbers(member)); }
+  double seconds_for_one(std::uint64_t RunCounts::*member) const {
+    return run_seconds / estimate(member).mean;
+  }
+};
+
+/// Whether the runs are of pawns, fish and rabbits, as those of Table 1.
+inline bool is_of_table(const Runs& runs) {
+  return runs.scene.source == Table1Scene::Source::mixed && runs.is_first_size;
+}
+/// The runs of a scene in its first size with a kind of volume, or null.
+const Runs* find(const std::vector<Runs>& all, const std::string& scene, BoundingVolume volume);
+
+/// The table with one row per run. Times are in it only by the clock, so that the table of the runs by steps
+/// is the same on every machine.
+Table runs_table(const std::vector<Runs>& all, std::uint64_t first_seed, bool by_clock);
+
+/// The complete runs, in the file of `runs_table`, which gets a row as soon as a run is complete.
+class RunLog {
+ public:
+  /// Starts the file in a folder, or with `resume` keeps its rows. Throws `Error` when the file is not such a
+  /// table.
+  RunLog(const std::filesystem::path& folder, bool by_clock, bool resume);
+
+  /// Null when the run is not complete.
+  const RunCounts* find(const Runs& runs, std::uint64_t seed) const;
+  void add(const Runs& runs, std::uint64_t seed, const RunCounts& counts);
+
+ private:
+  bool by_clock_;
+  std::map<std::string, RunCounts> done_;  ///< by scene, edge, volume and seed
+  std::optional<cli::OutputFile> file_;
+};
+
+/// Runs every scene with every kind of volume, for `simulated_seconds` per run. Runs are independent: each
+/// has one thread, and several run in parallel. Runs in the log are not repeated. Nothing after an
+/// interruption.
+std::optional<std::vector<Runs>> run_by_steps(const Table1Options& options, RunLog& log,
+                                              const cli::Interruption& interruption, bool show_progress);
+/// The same for `wall_clock` seconds of detection per run, one run after the other. These runs have no exact
+/// stage, as in the paper.
+std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunLog& log,
+                                              const cli::Interruption& interruption, bool show_progress);
+
+}  // namespace supple::experiments

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "inputs/inputs.hpp"
+#include "table1/table1_options.hpp"
+
+namespace supple::experiments {
+
+/// A scene file built into the program.
+struct SceneText {
+  const char* name;  ///< of the file, without its ending
+  const char* text;
+};
+
+/// Generated from scenes/ when the program is built: `table1_3`, `three_humans` and `three_bikes`.
+std::span<const SceneText> table1_scene_texts();
+
+/// Reads or makes a scene. Run `seed` differs from other runs by the random numbers of the motion.
+///
+/// A mixed scene has the pawn, the fish and the rabbit of `table1_3` several times, in a row for each model
+/// as in scenes/table1_6.toml and scenes/table1_9.toml, and in several rows from ten objects on. The border
+/// is that of `table1_3`, or larger when the objects do not fit.
+///
+/// Throws `Error` when the file is unusable, when objects start outside the cube of the given size, or when
+/// size or integrator have no effect on the scene.
+cli::Input read_scene(const Table1Scene& scene, std::optional<Integrator> integrator, std::uint64_t seed);
+
+/// A number that depends on the text of all scenes. Throws as `read_scene` does.
+std::uint64_t hash_of(const Table1Options& options);
+
+/// The longest edge of the border; none when the scene has no border.
+std::optional<double> edge_of(const cli::Input& input);
+
+}  // namespace supple::experiments

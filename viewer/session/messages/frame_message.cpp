@@ -1,0 +1,391 @@
+#include "messages/frame_message.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+#include "messages/statistics.hpp"
+#include "supple/inspection.hpp"
+
+namespace supple::viewer {
+namespace {
+
+using Row = std::array<float, 8>;
+using Ids = std::array<std::uint32_t, 8>;
+
+constexpr std::size_t most_elements = 1'000'000;
+
+Row row_of(const std::array<float, 3>& first, float w, const std::array<float, 3>& second, float last) {
+  return {first[0], first[1], first[2], w, second[0], second[1], second[2], last};
+}
+
+std::array<float, 3> floats(const Vec3d& v) {
+  return Center{}(v);
+}
+
+}  // namespace
+
+void FramePacker::forget() {
+  versions_.clear();
+  for (ObjectPairs* const pairs : {&touching_, &colliding_, &overlapping_}) pairs->clear();
+  paper_vertices_.forget();
+}
+
+void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
+  message_ = &message;
+  omissions_.clear();
+  octree_levels_.clear();
+  message.begin(MessageKind::frame);
+  add_positions(frame);
+  add_contacts(frame);
+  add_impacts(frame);
+  add_proximity_pairs(frame);
+  add_penetrations(frame);
+  add_curves(frame);
+  add_events(frame.source.scene().result());
+  add_statistics(frame);
+  if (frame.layers.candidates) add_candidates(frame);
+  for (const std::uint32_t object : frame.layers.octree_objects) add_octree(frame, object);
+  if (frame.layers.colliding_nodes) add_colliding_nodes(frame, *frame.layers.colliding_nodes);
+  if (frame.layers.scene_regions) add_scene_regions(frame);
+  if (frame.layers.colliding_vertices)
+    add_colliding_vertices(frame);
+  else
+    paper_vertices_.forget();
+  add_text(frame);
+}
+
+void FramePacker::add_positions(const FrameView& frame) {
+  versions_.resize(frame.show.objects.size(), 0);
+  for (std::size_t i = 0; i < versions_.size(); ++i) {
+    const std::uint64_t version = frame.source.version(i);
+    if (versions_[i] == version) continue;
+    versions_[i] = version;
+    const std::span<const Vec3d> positions = frame.source.positions(i);
+    const auto sent =
+        message_->add<std::array<float, 3>>(Tag::positions, static_cast<std::uint32_t>(i), positions.size());
+    std::transform(positions.begin(), positions.end(), sent.begin(), frame.center);
+  }
+}
+
+void FramePacker::add_contacts(const FrameView& frame) {
+  const DetectResult& result = frame.source.scene().result();
+  const std::size_t pair_count = limited("object_pairs", result.object_pairs.size());
+  const auto pairs = message_->add<std::array<std::uint32_t, 2>>(Tag::object_pairs, pair_count);
+  for (std::size_t i = 0; i < pair_count; ++i)
+    pairs[i] = {result.object_pairs[i].a.index, result.object_pairs[i].b.index};
+
+  const std::size_t count = limited("contacts", result.contacts.size());
+  const bool has_points = !result.contact_points.empty();
+  const auto rows = message_->add<Ids>(Tag::contacts, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Contact& c = result.contacts[i];
+    rows[i] = {c.object_a.index,
+               c.triangle_a,
+               c.object_b.index,
+               c.triangle_b,
+               static_cast<std::uint32_t>(c.kind),
+               has_points ? c.point_count : 0u,
+               has_points ? c.first_point : 0u,
+               0};
+  }
+  if (has_points) add_contact_points(frame, count);
+}
+
+/// Adds the points of the contacts that are sent, in the order of the contacts.
+void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact_count) {
+  const DetectResult& result = frame.source.scene().result();
+  const Contact* const last = contact_count == 0 ? nullptr : &result.contacts[contact_count - 1];
+  const std::size_t count = last == nullptr ? 0 : last->first_point + last->point_count;
+  const auto rows = message_->add<Row>(Tag::contact_points, count);
+  for (const Contact& contact : result.contacts.first(contact_count)) {
+    const std::array<float, 3> normal = floats(contact.normal);
+    for (std::size_t i = 0; i < contact.point_count; ++i) {
+      const std::size_t point = contact.first_point + i;
+      rows[point] = row_of(frame.center(result.contact_points[point].position), 0, normal, 0);
+    }
+  }
+}
+
+void FramePacker::add_impacts(const FrameView& frame) {
+  const auto contacts = frame.source.scene().result().continuous_contacts;
+  if (!contains(frame.source.scene().options().contacts, ContactKinds::continuous)) return;
+  const std::size_t count = limited("impacts", contacts.size());
+  const auto rows = message_->add<Ids>(Tag::impacts, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContinuousContact& c = contacts[i];
+    rows[i] = {c.object_a.index,
+               c.element_a[0],
+               c.element_a[1],
+               c.object_b.index,
+               c.element_b[0],
+               c.element_b[1],
+               static_cast<std::uint32_t>(c.kind),
+               static_cast<std::uint32_t>(c.certainty)};
+  }
+  const auto points = message_->add<Row>(Tag::impact_points, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContinuousContact& c = contacts[i];
+    points[i] = row_of(frame.center(c.point), static_cast<float>(c.toi), floats(c.normal), 0);
+  }
+}
+
+/// Adds the proximity pairs, each with its closest points.
+void FramePacker::add_proximity_pairs(const FrameView& frame) {
+  if (!contains(frame.source.scene().options().contacts, ContactKinds::proximity)) return;
+  const auto pairs = frame.source.scene().result().proximity_pairs;
+  const std::size_t count = limited("proximity_pairs", pairs.size());
+  const auto objects = message_->add<std::array<std::uint32_t, 2>>(Tag::proximity_pairs, count);
+  for (std::size_t i = 0; i < count; ++i) objects[i] = {pairs[i].object_a.index, pairs[i].object_b.index};
+  const auto rows = message_->add<Row>(Tag::proximity_points, count);
+  const auto margin = [&](ObjectId object) { return frame.show.objects[object.index].options.margin; };
+  for (std::size_t i = 0; i < count; ++i) {
+    const ProximityPair& pair = pairs[i];
+    const double reach = margin(pair.object_a) + margin(pair.object_b);
+    const double share = reach > 0 ? pair.distance / reach : 0;
+    rows[i] = row_of(frame.center(pair.point_a), static_cast<float>(pair.distance),
+                     frame.center(pair.point_b), static_cast<float>(share));
+  }
+}
+
+/// Adds the vertices inside solid objects, each with the closest point of the surface.
+void FramePacker::add_penetrations(const FrameView& frame) {
+  const Scene& scene = frame.source.scene();
+  if (!contains(scene.options().contacts, ContactKinds::penetration)) return;
+  const auto penetrations = scene.result().penetrations;
+  const std::size_t count = limited("penetrations", penetrations.size());
+  const auto ids = message_->add<std::array<std::uint32_t, 4>>(Tag::penetrations, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Penetration& p = penetrations[i];
+    ids[i] = {p.object_a.index, p.vertex, p.object_b.index, p.triangle};
+  }
+  const auto rows = message_->add<Row>(Tag::penetration_points, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Penetration& p = penetrations[i];
+    rows[i] = row_of(frame.center(scene.position(p.object_a, p.vertex)), static_cast<float>(p.depth),
+                     frame.center(p.point), 0);
+  }
+}
+
+/// Adds as many curves as there is room for with the vertices that they enclose.
+void FramePacker::add_curves(const FrameView& frame) {
+  const Scene& scene = frame.source.scene();
+  if (!contains(scene.options().contacts, ContactKinds::penetration)) return;
+  const std::span<const IntersectionCurve> all = scene.result().curves;
+  const auto vertex_end = [](const IntersectionCurve& curve) {
+    return std::size_t{curve.first_enclosed} + curve.enclosed_count_a + curve.enclosed_count_b;
+  };
+  std::size_t count = 0;
+  while (count < std::min(all.size(), most_elements) && vertex_end(all[count]) <= most_elements) ++count;
+  if (count < all.size()) omissions_.push_back({"curves", all.size()});
+  const std::span<const IntersectionCurve> curves = all.first(count);
+  const auto ids = message_->add<Ids>(Tag::curves, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const IntersectionCurve& c = curves[i];
+    ids[i] = {c.a.index,
+              c.b.index,
+              static_cast<std::uint32_t>(c.kind),
+              c.contact_count,
+              c.first_enclosed,
+              c.enclosed_count_a,
+              c.enclosed_count_b,
+              0};
+  }
+  const auto rows = message_->add<Row>(Tag::curve_points, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const IntersectionCurve& c = curves[i];
+    rows[i] = row_of(frame.center(c.centroid), static_cast<float>(c.depth), floats(c.normal),
+                     static_cast<float>(norm(c.area)));
+  }
+  const std::size_t vertex_count = curves.empty() ? 0 : vertex_end(curves.back());
+  const auto vertices = message_->add<std::uint32_t>(Tag::enclosed_vertices, vertex_count);
+  std::copy_n(scene.result().enclosed_vertices.begin(), vertex_count, vertices.begin());
+}
+
+/// Adds the events since the last frame that was sent, which may be several steps ago.
+void FramePacker::add_events(const DetectResult& result) {
+  now_.clear();
+  for (const ObjectPair& pair : result.object_pairs) now_.emplace_back(pair.a.index, pair.b.index);
+  add_changes(Tag::volume_begin, Tag::volume_end, overlapping_);
+  now_.clear();
+  for (const auto groups : {result.groups, result.continuous_groups}) {
+    for (const ContactGroup& group : groups) {
+      if (group.a != group.b) now_.emplace_back(group.a.index, group.b.index);
+    }
+  }
+  std::sort(now_.begin(), now_.end());
+  now_.erase(std::unique(now_.begin(), now_.end()), now_.end());
+  add_changes(Tag::contact_begin, Tag::contact_end, touching_);
+}
+
+/// Adds the differences between the present pairs and those sent before, which the present pairs replace.
+void FramePacker::add_changes(Tag begin, Tag end, ObjectPairs& sent) {
+  const auto add_missing = [&](Tag tag, const ObjectPairs& pairs, const ObjectPairs& from) {
+    changed_.clear();
+    std::set_difference(pairs.begin(), pairs.end(), from.begin(), from.end(), std::back_inserter(changed_));
+    const auto rows = message_->add<std::array<std::uint32_t, 2>>(tag, changed_.size());
+    for (std::size_t i = 0; i < changed_.size(); ++i) rows[i] = {changed_[i].first, changed_[i].second};
+  };
+  add_missing(begin, now_, sent);
+  add_missing(end, sent, now_);
+  sent.swap(now_);
+}
+
+void FramePacker::add_statistics(const FrameView& frame) {
+  const auto values = message_->add<double>(Tag::statistics, 1 + statistic_count);
+  values[0] = frame.source.motion_seconds();
+  std::size_t place = 0;
+  for_each_statistic(frame.source.scene().result().stats,
+                     [&](const char*, double value) { values[++place] = value; });
+}
+
+void FramePacker::add_candidates(const FrameView& frame) {
+  const auto [candidates, total] = SceneInspector(frame.source.scene()).candidates(most_elements);
+  limited("candidates", total);
+  const auto rows = message_->add<std::array<std::uint32_t, 4>>(Tag::candidates, candidates.size());
+  std::transform(candidates.begin(), candidates.end(), rows.begin(), [](const CandidatePair& pair) {
+    return std::array{pair.object_a.index, pair.triangle_a, pair.object_b.index, pair.triangle_b};
+  });
+}
+
+void FramePacker::add_octree(const FrameView& frame, std::uint32_t object) {
+  const ObjectId id = frame.source.id(object);
+  const SceneInspector inspector(frame.source.scene());
+  octree_levels_.push_back(inspector.octree_depth(id));
+  add_cells(frame, "octree", {Tag::octree_boxes, Tag::octree_spheres, Tag::octree_edges}, object,
+            inspector.cells(id, frame.layers.octree_level));
+}
+
+/// Adds the nodes of each object that collide, each once.
+void FramePacker::add_colliding_nodes(const FrameView& frame, const CollidingNodes& wanted) {
+  const SceneInspector inspector(frame.source.scene());
+  std::vector<std::vector<OctreeCell>> cells(frame.show.objects.size());
+  const auto add = [&](ObjectId a, ObjectId b) {
+    const NodePairList list = inspector.node_pairs(a, b);
+    std::vector<std::uint8_t> is_wanted_a(list.nodes_a.size(), 0), is_wanted_b(list.nodes_b.size(), 0);
+    for (std::uint32_t level = 0; level < list.level_count(); ++level) {
+      if (wanted.level >= 0 && wanted.level != level) continue;
+      for (const NodePairList::Pair& pair : list.pairs_of(level)) {
+        if (wanted.level == CollidingNodes::leaves && !list.is_leaf_pair(pair)) continue;
+        is_wanted_a[pair.a] = is_wanted_b[pair.b] = 1;
+      }
+    }
+    for (std::size_t i = 0; i < is_wanted_a.size(); ++i) {
+      if (is_wanted_a[i] != 0) cells[a.index].push_back(list.nodes_a[i]);
+    }
+    for (std::size_t i = 0; i < is_wanted_b.size(); ++i) {
+      if (is_wanted_b[i] != 0) cells[b.index].push_back(list.nodes_b[i]);
+    }
+  };
+  if (wanted.objects) {
+    add(frame.source.id((*wanted.objects)[0]), frame.source.id((*wanted.objects)[1]));
+  } else {
+    for (const ObjectPair& pair : frame.source.scene().result().object_pairs) add(pair.a, pair.b);
+  }
+  for (std::uint32_t object = 0; object < cells.size(); ++object) {
+    const auto key = [](const OctreeCell& cell) {
+      const Vec3f& at = cell.box.min;
+      return std::tuple(cell.level, cell.number, at.x, at.y, at.z);
+    };
+    std::vector<OctreeCell>& list = cells[object];
+    std::sort(list.begin(), list.end(), [&](const auto& p, const auto& q) { return key(p) < key(q); });
+    const auto same = [&](const auto& p, const auto& q) { return key(p) == key(q); };
+    list.erase(std::unique(list.begin(), list.end(), same), list.end());
+    if (!list.empty())
+      add_cells(frame, "colliding_nodes",
+                {Tag::colliding_boxes, Tag::colliding_spheres, Tag::colliding_edges}, object,
+                std::move(list));
+  }
+}
+
+/// Adds the spheres, oriented boxes, k-DOPs or boxes of the cells. Cells without a finite triangle have none.
+void FramePacker::add_cells(const FrameView& frame, const char* layer, CellTags tags, std::uint32_t object,
+                            std::vector<OctreeCell> cells) {
+  std::erase_if(cells, [](const OctreeCell& cell) { return cell.box.empty() && cell.sphere.empty(); });
+  if (!cells.empty() && !cells.front().slabs.empty())
+    return add_edges(frame, layer, tags.edges, object, cells);
+  const bool has_spheres = !cells.empty() && !cells.front().sphere.empty();
+  const std::size_t count = limited(layer, cells.size());
+  const auto rows = message_->add<Row>(has_spheres ? tags.spheres : tags.boxes, object, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const OctreeCell& cell = cells[i];
+    const float level = static_cast<float>(cell.level);
+    const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
+    rows[i] = has_spheres
+                  ? row_of(frame.center(cell.sphere.center), cell.sphere.radius, {level, triangles, 0}, 0)
+                  : row_of(frame.center(cell.box.min), level, frame.center(cell.box.max), triangles);
+  }
+}
+
+/// Adds the edges of oriented boxes or k-DOPs.
+void FramePacker::add_edges(const FrameView& frame, const char* layer, Tag tag, std::uint32_t object,
+                            std::span<const OctreeCell> cells) {
+  edges_.clear();
+  for (const OctreeCell& cell : cells) {
+    const float level = static_cast<float>(cell.level);
+    const float triangles = cell.is_leaf ? static_cast<float>(cell.triangle_count) : -1;
+    for (const auto& [from, to] : edges_of(cell.slabs))
+      edges_.push_back(row_of(frame.center(from), level, frame.center(to), triangles));
+  }
+  const std::size_t count = limited(layer, edges_.size());
+  std::copy_n(edges_.begin(), count, message_->add<Row>(tag, object, count).begin());
+}
+
+void FramePacker::add_scene_regions(const FrameView& frame) {
+  const std::vector<SceneRegion> regions = SceneInspector(frame.source.scene()).regions();
+  const auto rows = message_->add<Row>(Tag::scene_regions, limited("scene_regions", regions.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const SceneRegion& region = regions[i];
+    rows[i] =
+        row_of(frame.center(region.box.min), static_cast<float>(region.level), frame.center(region.box.max),
+               region.is_leaf ? static_cast<float>(region.object_count) : -1);
+  }
+}
+
+/// Also adds the events of the narrow phase, because the same detection finds them.
+void FramePacker::add_colliding_vertices(const FrameView& frame) {
+  const auto& vertices = paper_vertices_.find(frame.show, frame.source);
+  now_.clear();
+  for (const ObjectPair& pair : paper_vertices_.pairs()) now_.emplace_back(pair.a.index, pair.b.index);
+  add_changes(Tag::narrow_phase_begin, Tag::narrow_phase_end, colliding_);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::size_t count = limited("colliding_vertices", vertices[i].size());
+    const auto sent =
+        message_->add<std::uint32_t>(Tag::colliding_vertices, static_cast<std::uint32_t>(i), count);
+    std::copy_n(vertices[i].begin(), count, sent.begin());
+  }
+}
+
+void FramePacker::add_text(const FrameView& frame) {
+  json_.clear();
+  json_.begin_object();
+  json_.member("generation", frame.generation);
+  json_.member("step", frame.source.step());
+  json_.member("time", frame.source.time());
+  json_.member("broad_phase_method", word_of(frame.source.scene().result().stats.broad_phase_method));
+  json_.member("playing", frame.playing);
+  json_.member("speed", frame.speed);
+  json_.member("loop", frame.loop);
+  json_.key("octree_levels");
+  json_.begin_array();
+  for (const std::uint32_t level : octree_levels_) json_.value(level);
+  json_.end_array();
+  json_.key("omitted");
+  json_.begin_object();
+  for (const Omission& omission : omissions_) json_.member(omission.layer, omission.count);
+  json_.end_object();
+  json_.end_object();
+  message_->add_text(json_.text());
+}
+
+/// The number of elements to send. Counts the omitted ones, summed over objects.
+std::size_t FramePacker::limited(const char* layer, std::uint64_t count) {
+  if (count <= most_elements) return static_cast<std::size_t>(count);
+  omissions_.push_back({layer, count});
+  return most_elements;
+}
+
+}  // namespace supple::viewer

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "layers.hpp"
+#include "messages/json_text.hpp"
+#include "messages/message.hpp"
+#include "scene_view.hpp"
+#include "sources/center.hpp"
+#include "sources/paper_vertices.hpp"
+#include "sources/source.hpp"
+#include "supple/inspection.hpp"
+
+namespace supple::viewer {
+
+/// The input of one frame message.
+struct FrameView {
+  const SceneView& show;
+  const Source& source;
+  const Layers& layers;
+  Center center{};
+  std::uint64_t generation = 0;
+  bool playing = false;
+  double speed = 1;
+  bool loop = false;
+};
+
+/// Writes frame messages and tracks what the page already has.
+class FramePacker {
+ public:
+  /// Call when the page has nothing yet or the scene changed.
+  void forget();
+  void pack(const FrameView& frame, MessageWriter& message);
+
+ private:
+  using ObjectPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  /// A layer that is too large to send, and its full number of elements.
+  struct Omission {
+    const char* layer;
+    std::uint64_t count;
+  };
+
+  void add_positions(const FrameView& frame);
+  void add_contacts(const FrameView& frame);
+  void add_contact_points(const FrameView& frame, std::size_t contact_count);
+  void add_impacts(const FrameView& frame);
+  void add_proximity_pairs(const FrameView& frame);
+  void add_penetrations(const FrameView& frame);
+  void add_curves(const FrameView& frame);
+  void add_events(const DetectResult& result);
+  void add_changes(Tag begin, Tag end, ObjectPairs& sent);
+  void add_statistics(const FrameView& frame);
+  void add_candidates(const FrameView& frame);
+  void add_octree(const FrameView& frame, std::uint32_t object);
+  void add_colliding_nodes(const FrameView& frame, const CollidingNodes& wanted);
+  /// The tags of a layer of cells, by the shape of the cells.
+  struct CellTags {
+    Tag boxes, spheres, edges;
+  };
+  void add_cells(const FrameView& frame, const char* layer, CellTags tags, std::uint32_t object,
+                 std::vector<OctreeCell> cells);
+  void add_edges(const FrameView& frame, const char* layer, Tag tag, std::uint32_t object,
+                 std::span<const OctreeCell> cells);
+  void add_scene_regions(const FrameView& frame);
+  void add_colliding_vertices(const FrameView& frame);
+  void add_text(const FrameView& frame);
+  std::size_t limited(const char* layer, std::uint64_t count);
+
+  MessageWriter* message_ = nullptr;
+  std::vector<std::uint64_t> versions_;  // one per object, of the positions last sent; 0 for none
+  /// Pairs that the page knows: of contacts, of the narrow phase, and of volumes.
+  ObjectPairs touching_, colliding_, overlapping_;
+  ObjectPairs now_, changed_;
+  std::vector<Omission> omissions_;
+  std::vector<std::uint32_t> octree_levels_;
+  std::vector<std::array<float, 8>> edges_;  // of the cells of one object
+  PaperVertices paper_vertices_;
+  JsonText json_;
+};
+
+}  // namespace supple::viewer

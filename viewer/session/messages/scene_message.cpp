@@ -1,0 +1,226 @@
+#include "messages/scene_message.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "messages/described_json.hpp"
+#include "messages/long_steps.hpp"
+#include "messages/statistics.hpp"
+#include "sources/extent.hpp"
+#include "supple/result_descriptions.hpp"
+#include "supple/simulation_descriptions.hpp"
+#include "supple/version.hpp"
+
+namespace supple::viewer {
+namespace {
+
+const MassSpringMotion* body_of(const ViewedObject& object) {
+  return std::get_if<MassSpringMotion>(&object.motion);
+}
+
+void add_objects(const Stage& stage, JsonText& json) {
+  json.key("objects");
+  json.begin_array();
+  for (std::size_t i = 0; i < stage.show().objects.size(); ++i) {
+    const ViewedObject& object = stage.show().objects[i];
+    json.begin_object();
+    json.member("name", stage.source().scene().name(stage.source().id(i)));
+    json.member("vertices", std::uint64_t{object.mesh.positions.size()});
+    json.member("triangles", std::uint64_t{object.mesh.triangles.size()});
+    json.member("static", object.options.is_static);
+    json.member("body", body_of(object) != nullptr);
+    json.member("waves", std::holds_alternative<WaveMotion>(object.motion));
+    json.member("rigid", std::holds_alternative<RigidMotion>(object.motion));
+    json.member("self_collision", object.options.self_collision);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void add_place(const Stage& stage, JsonText& json) {
+  const Extent extent = extent_of(stage.show());
+  const Vec3d center = stage.center().at;
+  json.member("center", center);
+  json.key("bounds");
+  json.begin_array();
+  json.value(extent.empty() ? Vec3d{} : extent.low - center);
+  json.value(extent.empty() ? Vec3d{} : extent.high - center);
+  json.end_array();
+}
+
+/// The options that `set` takes.
+template <class Options>
+void add_settings(const Options& options, JsonText& json) {
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        if (!is_setting(field)) return;
+        json.key(field.key);
+        write_value(json, field, value);
+      },
+      options);
+}
+
+/// The words of each option that has words.
+template <class Options>
+void add_words(JsonText& json) {
+  Options options;
+  for_each_leaf(
+      [&](const auto& field, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        const auto add = [&](const auto& list) {
+          json.key(field.key);
+          json.begin_array();
+          for (const char* word : list) json.value(word);
+          json.end_array();
+        };
+        if (field.has_truth_words()) add(field.truth_words);
+        if constexpr (std::is_same_v<Value, ContactKinds>) {
+          std::vector<const char*> sets;  // with all that they include
+          for (std::size_t i = 0; i < words<Value>.size(); ++i) {
+            if (const auto kinds = static_cast<Value>(i); with_included(kinds) == kinds)
+              sets.push_back(words<Value>[i]);
+          }
+          add(sets);
+        } else if constexpr (Worded<Value> && !std::is_same_v<Value, ProximityListing>) {
+          add(words<Value>);
+        }
+      },
+      options);
+}
+
+void add_options(const Stage& stage, JsonText& json) {
+  const SceneView& show = stage.show();
+  const SceneOptions& scene = show.simulation.scene;
+  const ObjectOctreeOptions octree =
+      show.objects.empty() ? ObjectOctreeOptions{} : show.objects.front().options.octree;
+  json.member("time_step", show.simulation.time_step);
+  json.member("seed", std::to_string(show.simulation.seed));
+  add_settings(scene, json);
+  add_settings(octree, json);
+  json.key("integrator");
+  const auto first_body = std::find_if(show.objects.begin(), show.objects.end(),
+                                       [](const ViewedObject& object) { return body_of(object) != nullptr; });
+  if (first_body == show.objects.end())
+    json.null();
+  else
+    json.value(word_of(body_of(*first_body)->springs.integrator));
+}
+
+void add_choices(JsonText& json) {
+  json.key("choices");
+  json.begin_object();
+  add_words<SceneOptions>(json);
+  add_words<ObjectOctreeOptions>(json);
+  add_words<MassSpringOptions>(json);
+  json.end_object();
+}
+
+/// The words of the kinds in frame messages, in the order of their numbers.
+void add_kinds(JsonText& json) {
+  const auto add = [&](const char* name, const auto& list) {
+    json.key(name);
+    json.begin_array();
+    for (const char* word : list) json.value(word);
+    json.end_array();
+  };
+  json.key("kinds");
+  json.begin_object();
+  add("contact", words<IntersectionKind>);
+  add("certainty", words<ImpactCertainty>);
+  add("curve", words<CurveKind>);
+  json.key("impact");
+  json.begin_array();
+  for (std::size_t i = 0; i < words<ElementPairKind>.size(); ++i) {
+    json.begin_array();
+    for (const FeatureKind kind : feature_kinds(static_cast<ElementPairKind>(i))) json.value(word_of(kind));
+    json.end_array();
+  }
+  json.end_array();
+  json.end_object();
+}
+
+void add_abilities(Stage& stage, JsonText& json) {
+  json.member("source", stage.recording() ? "recording" : "simulation");
+  json.key("frames");
+  if (RecordingSource* const recording = stage.recording())
+    json.value(recording->frame_count());
+  else
+    json.null();
+  const std::vector<std::string> simulation{"play", "reset", "grab", "set"}, recording{"play", "seek", "set"};
+  json.member("can", std::span<const std::string>(stage.recording() ? recording : simulation));
+}
+
+void add_column_names(Stage& stage, JsonText& json) {
+  json.key("statistics");
+  json.begin_array();
+  json.value("motion_seconds");
+  for_each_statistic({}, [&](const char* name, double) { json.value(name); });
+  json.end_array();
+  static const std::vector<std::string> none;
+  json.member("series",
+              std::span<const std::string>(stage.recording() ? stage.show().frames->series().names : none));
+}
+
+void add_warnings(Stage& stage, JsonText& json) {
+  std::vector<std::string> warnings;
+  if (SimulationSource* const simulation = stage.simulation()) {
+    if (auto warning = warning_of_long_steps(simulation->simulation()))
+      warnings.push_back(std::move(*warning));
+  }
+  json.member("warnings", std::span<const std::string>(warnings));
+}
+
+void add_events(Tag begin, Tag end, const Series::Events& events, MessageWriter& message) {
+  for (const auto& [tag, list] : {std::pair(begin, &events.begin), std::pair(end, &events.end)}) {
+    const auto rows = message.add<std::array<std::uint32_t, 3>>(tag, list->size());
+    std::transform(list->begin(), list->end(), rows.begin(), [](const Series::Event& event) {
+      return std::array{event.frame, event.a, event.b};
+    });
+  }
+}
+
+}  // namespace
+
+void pack_scene(Stage& stage, std::uint64_t generation, JsonText& json, MessageWriter& message) {
+  const SceneView& show = stage.show();
+  json.clear();
+  json.begin_object();
+  json.member("version", SUPPLE_VERSION);
+  json.member("title", show.title);
+  json.member("generation", generation);
+  add_abilities(stage, json);
+  add_place(stage, json);
+  add_objects(stage, json);
+  add_options(stage, json);
+  add_choices(json);
+  add_kinds(json);
+  add_column_names(stage, json);
+  add_warnings(stage, json);
+  json.end_object();
+  message.begin(MessageKind::scene);
+  message.add_text(json.text());
+  for (std::size_t i = 0; i < show.objects.size(); ++i) {
+    const std::vector<Triangle>& triangles = show.objects[i].mesh.triangles;
+    const auto sent = message.add<Triangle>(Tag::triangles, static_cast<std::uint32_t>(i), triangles.size());
+    std::copy(triangles.begin(), triangles.end(), sent.begin());
+  }
+}
+
+void pack_series(const Frames& frames, MessageWriter& message) {
+  const Series& series = frames.series();
+  const std::size_t columns = series.names.size();
+  const std::size_t rows = columns == 0 ? 0 : series.values.size() / columns;
+  message.begin(MessageKind::series);
+  // One row per element, one column per component.
+  const auto values = message.add_rows<double>(Tag::series, rows, columns);
+  std::copy_n(series.values.begin(), values.size(), values.begin());
+  add_events(Tag::series_contact_begin, Tag::series_contact_end, series.contacts, message);
+  add_events(Tag::series_narrow_phase_begin, Tag::series_narrow_phase_end, series.narrow_phase, message);
+  add_events(Tag::series_volume_begin, Tag::series_volume_end, series.volumes, message);
+}
+
+}  // namespace supple::viewer

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "messages/message.hpp"
+
+namespace supple::viewer {
+
+// What each section of a message contains. The reader of the page (viewer/page/src/protocol/sections.ts) and
+// the table of docs/protocol.md are made from this list.
+
+enum class ScalarOfSection : std::uint8_t { uint8, uint32, float32, float64 };
+
+struct SectionForm {
+  Tag tag;
+  const char* name;
+  ScalarOfSection scalar;
+  std::uint32_t width;  ///< scalars of an element; 0 when the scene determines it
+  unsigned kinds;       ///< of messages with this section: a set of bits `1 << kind`
+  bool is_of_object;    ///< one section for each object
+  const char* element;  ///< what an element is
+  const char* when;     ///< when it is in a message; empty: always
+};
+
+inline constexpr unsigned in_scene = 1u << static_cast<unsigned>(MessageKind::scene);
+inline constexpr unsigned in_frame = 1u << static_cast<unsigned>(MessageKind::frame);
+inline constexpr unsigned in_series = 1u << static_cast<unsigned>(MessageKind::series);
+inline constexpr unsigned in_texts = in_scene | in_frame | 1u << static_cast<unsigned>(MessageKind::answer) |
+                                     1u << static_cast<unsigned>(MessageKind::failure);
+
+inline constexpr std::array section_forms = std::to_array<SectionForm>({
+    {Tag::text, "text", ScalarOfSection::uint8, 1, in_texts, false, "UTF-8 of a JSON object", ""},
+    {Tag::triangles, "triangles", ScalarOfSection::uint32, 3, in_scene, true, "vertices", ""},
+    {Tag::positions, "positions", ScalarOfSection::float32, 3, in_frame, true,
+     "`center` of the scene subtracted", "that moved since the last frame that was sent"},
+    {Tag::object_pairs, "object_pairs", ScalarOfSection::uint32, 2, in_frame, false, "objects a < b", ""},
+    {Tag::contacts, "contacts", ScalarOfSection::uint32, 8, in_frame, false,
+     "object a, triangle a, object b, triangle b, kind (an index into `kinds.contact` of the scene), points, "
+     "first point, 0",
+     ""},
+    {Tag::contact_points, "contact_points", ScalarOfSection::float32, 8, in_frame, false,
+     "x, y, z (minus `center`), 0, unit normal x, y, z, 0", ""},
+    {Tag::impacts, "impacts", ScalarOfSection::uint32, 8, in_frame, false,
+     "object a, element a (2), object b, element b (2), kind (an index into `kinds.impact`), certainty (into "
+     "`kinds.certainty`). An edge has two vertices, other elements repeat their number",
+     ""},
+    {Tag::impact_points, "impact_points", ScalarOfSection::float32, 8, in_frame, false,
+     "x, y, z, time in the step, unit normal x, y, z, 0", ""},
+    {Tag::candidates, "candidates", ScalarOfSection::uint32, 4, in_frame, false,
+     "object a, triangle a, object b, triangle b", "when requested"},
+    {Tag::scene_regions, "scene_regions", ScalarOfSection::float32, 8, in_frame, false,
+     "lower corner, level, upper corner, objects (−1 for inner regions)", "when requested"},
+    {Tag::octree_boxes, "octree_boxes", ScalarOfSection::float32, 8, in_frame, true,
+     "lower corner, level, upper corner, triangles (−1 for inner cells)", "when requested"},
+    {Tag::octree_spheres, "octree_spheres", ScalarOfSection::float32, 8, in_frame, true,
+     "centre, radius, level, triangles (−1 for inner cells), 0, 0", "when requested"},
+    {Tag::colliding_vertices, "colliding_vertices", ScalarOfSection::uint32, 1, in_frame, true,
+     "vertices of the paper's output", "when requested"},
+    {Tag::statistics, "statistics", ScalarOfSection::float64, 1, in_frame, false,
+     "in the order of the names in `statistics` of the scene", ""},
+    {Tag::contact_begin, "contact_begin", ScalarOfSection::uint32, 2, in_frame, false,
+     "objects that began or stopped touching", ""},
+    {Tag::contact_end, "contact_end", ScalarOfSection::uint32, 2, in_frame, false,
+     "objects that began or stopped touching", ""},
+    {Tag::narrow_phase_begin, "narrow_phase_begin", ScalarOfSection::uint32, 2, in_frame, false,
+     "objects whose leaves began or ended to collide", "with `colliding_vertices`"},
+    {Tag::narrow_phase_end, "narrow_phase_end", ScalarOfSection::uint32, 2, in_frame, false,
+     "objects whose leaves began or ended to collide", "with `colliding_vertices`"},
+    {Tag::volume_begin, "volume_begin", ScalarOfSection::uint32, 2, in_frame, false,
+     "objects whose volumes began or ended to overlap", ""},
+    {Tag::volume_end, "volume_end", ScalarOfSection::uint32, 2, in_frame, false,
+     "objects whose volumes began or ended to overlap", ""},
+    {Tag::colliding_boxes, "colliding_boxes", ScalarOfSection::float32, 8, in_frame, true,
+     "as `octree_boxes`: nodes that collide in the narrow phase", "when requested; with such nodes"},
+    {Tag::colliding_spheres, "colliding_spheres", ScalarOfSection::float32, 8, in_frame, true,
+     "as `octree_spheres`: the same for spheres", "when requested; with such nodes"},
+    {Tag::octree_edges, "octree_edges", ScalarOfSection::float32, 8, in_frame, true,
+     "one end of an edge, level, the other end, triangles (−1 for inner cells)", "when requested"},
+    {Tag::colliding_edges, "colliding_edges", ScalarOfSection::float32, 8, in_frame, true,
+     "as `octree_edges`: nodes that collide in the narrow phase", "when requested; with such nodes"},
+    {Tag::proximity_pairs, "proximity_pairs", ScalarOfSection::uint32, 2, in_frame, false, "objects a, b",
+     ""},
+    {Tag::proximity_points, "proximity_points", ScalarOfSection::float32, 8, in_frame, false,
+     "closest point of a, distance, closest point of b, distance / sum of the margins", ""},
+    {Tag::penetrations, "penetrations", ScalarOfSection::uint32, 4, in_frame, false,
+     "object a, vertex, object b, nearest triangle", ""},
+    {Tag::penetration_points, "penetration_points", ScalarOfSection::float32, 8, in_frame, false,
+     "the vertex, depth, the closest point of b, 0", ""},
+    {Tag::curves, "curves", ScalarOfSection::uint32, 8, in_frame, false,
+     "object a, object b, kind of the curve (an index into `kinds.curve`), contacts, first enclosed vertex, "
+     "enclosed vertices of a, of b, 0",
+     ""},
+    {Tag::curve_points, "curve_points", ScalarOfSection::float32, 8, in_frame, false,
+     "centroid of the curve, depth, unit normal x, y, z, area", ""},
+    {Tag::enclosed_vertices, "enclosed_vertices", ScalarOfSection::uint32, 1, in_frame, false,
+     "vertices that curves enclose, first those of a, then those of b", ""},
+    {Tag::series, "series", ScalarOfSection::float64, 0, in_series, false,
+     "one row for each frame, in the order of the names in `series` of the scene", ""},
+    {Tag::series_contact_begin, "series_contact_begin", ScalarOfSection::uint32, 3, in_series, false,
+     "frame, object a, object b", ""},
+    {Tag::series_contact_end, "series_contact_end", ScalarOfSection::uint32, 3, in_series, false,
+     "frame, object a, object b", ""},
+    {Tag::series_narrow_phase_begin, "series_narrow_phase_begin", ScalarOfSection::uint32, 3, in_series,
+     false, "frame, object a, object b; only of recordings with colliding vertices", ""},
+    {Tag::series_narrow_phase_end, "series_narrow_phase_end", ScalarOfSection::uint32, 3, in_series, false,
+     "frame, object a, object b; only of recordings with colliding vertices", ""},
+    {Tag::series_volume_begin, "series_volume_begin", ScalarOfSection::uint32, 3, in_series, false,
+     "frame, object a, object b", ""},
+    {Tag::series_volume_end, "series_volume_end", ScalarOfSection::uint32, 3, in_series, false,
+     "frame, object a, object b", ""},
+});
+
+}  // namespace supple::viewer

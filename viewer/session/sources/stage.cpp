@@ -1,0 +1,29 @@
+#include "sources/stage.hpp"
+
+#include <algorithm>
+
+#include "sources/extent.hpp"
+
+namespace supple::viewer {
+
+Stage::Stage(const SceneView& show, const Settings& settings, std::uint64_t frame)
+    : show_(arranged(show, settings)), center_{extent_of(show_).center()} {
+  if (show_.frames == nullptr) {
+    simulation_ = std::make_unique<SimulationSource>(show_);
+    return;
+  }
+  recording_ = std::make_unique<RecordingSource>(show_);
+  if (frame > 0) recording_->seek(frame);
+}
+
+const Source& Stage::source() const {
+  return simulation_ ? static_cast<const Source&>(*simulation_) : *recording_;
+}
+
+bool Stage::has_motion() const {
+  if (recording_) return recording_->frame_count() > 1;
+  return std::any_of(show_.objects.begin(), show_.objects.end(),
+                     [](const ViewedObject& object) { return object.motion.index() != 0; });
+}
+
+}  // namespace supple::viewer

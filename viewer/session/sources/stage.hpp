@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "scene_view.hpp"
+#include "settings.hpp"
+#include "sources/center.hpp"
+#include "sources/recording_source.hpp"
+#include "sources/simulation_source.hpp"
+
+namespace supple::viewer {
+
+/// A scene view with settings applied, and the source of its positions: a simulation or a recording.
+class Stage {
+ public:
+  /// A recording starts at `frame`. Throws `Error` when an object or an option is invalid.
+  Stage(const SceneView& show, const Settings& settings, std::uint64_t frame = 0);
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  const SceneView& show() const { return show_; }
+  const Center& center() const { return center_; }
+  const Source& source() const;
+  SimulationSource* simulation() { return simulation_.get(); }  ///< null for a recording
+  RecordingSource* recording() { return recording_.get(); }     ///< null for a simulation
+  /// False when time changes nothing.
+  bool has_motion() const;
+
+ private:
+  SceneView show_;
+  Center center_;
+  std::unique_ptr<SimulationSource> simulation_;
+  std::unique_ptr<RecordingSource> recording_;
+};
+
+}  // namespace supple::viewer
