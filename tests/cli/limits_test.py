@@ -82,7 +82,7 @@ class Limits(ProgramTest):
                 process.send_signal(number)
                 out, error = process.communicate()
                 self.assertEqual(process.returncode, status, error)
-                self.assertRegex(error, "^supple: interrupted after (frame|step) \\d+ of \\d+\n$")
+                self.assertRegex(error, "^supple: interrupted after [0-9,]+ of (1,000,000,000 frames|999,999,999 steps)\n$")
                 result = self.read("x.json")
                 self.assertEqual(result["truncated"], True)
                 self.assertGreaterEqual(len(result["frames"]), 1)
