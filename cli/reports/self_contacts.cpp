@@ -42,9 +42,10 @@ std::vector<std::string> SelfContacts::notes() const {
   for (const auto& [object, counts] : counts_) {
     if (2 * counts.at_seams <= counts.all) continue;
     notes.push_back(
-        fmt::format("{} of {} of {} with itself are between vertices at equal positions, as at the seams of "
+        fmt::format("{} of {} of {} with itself {} between vertices at equal positions, as at the seams of "
                     "an export; --weld makes such vertices one",
-                    grouped(counts.at_seams), counted(counts.all, "contact"), name_of(scene_, object)));
+                    grouped(counts.at_seams), counted(counts.all, "contact"), name_of(scene_, object),
+                    counts.at_seams == 1 ? "is" : "are"));
   }
   if (const std::string note = note_of_neighbours(); !note.empty()) notes.push_back(note);
   return notes;

@@ -206,8 +206,9 @@ void TextReport::print_pairs(const Scene& scene) const {
   if (left_out > 0)
     fmt::print("and {} with fewer; {} lists all\n", counted(left_out, "pair"),
                is_in_csv ? "--csv" : "--json");
-  fmt::print("\n{} that intersect; pairs of objects began to touch {} and separated {}\n\n",
-             counted(triangle_pairs_, "triangle pair"), counted(begun_, "time"), counted(ended_, "time"));
+  fmt::print("\n{} that {}; pairs of objects began to touch {} and separated {}\n\n",
+             counted(triangle_pairs_, "triangle pair"), triangle_pairs_ == 1 ? "intersects" : "intersect",
+             counted(begun_, "time"), counted(ended_, "time"));
 }
 
 void TextReport::print_collisions(const Scene& scene) const {
