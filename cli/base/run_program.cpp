@@ -66,8 +66,14 @@ int run_program(const std::function<int()>& run) {
   // The program closes all recordings before it exits. Without this call, HDF5 would report handles that a
   // damaged recording left open to standard error.
   H5dont_atexit();
+  // HDF5 1.10 exits without a message when it gets no memory to start.
+  static bool hdf5_has_started = false;
+  std::atexit([] {
+    if (!hdf5_has_started) std::_Exit(report_lack_of_memory());
+  });
   // The program reports what fails; HDF5 must not print its own messages.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  hdf5_has_started = true;
   try {
     const int exit_status = run();
     OutputFile("-").close();
