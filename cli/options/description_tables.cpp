@@ -8,8 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <set>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -275,22 +273,17 @@ void record_table(const char* name) {
   });
 }
 
-std::set<std::string> split(const std::string& columns) {
-  std::set<std::string> names;
-  std::istringstream stream(columns);
-  for (std::string name; std::getline(stream, name, ',');) names.insert(name);
-  return names;
-}
-
 void csv_table() {
   table("json_csv", "| Contacts | Columns | With `--contact-details` also |", [] {
     for (std::size_t i = 1; i < set_words<ContactKinds>.size(); ++i) {
       const auto kind = static_cast<ContactKinds>(1u << (i - 1));
-      const std::string columns = csv_heading(kind, false);
-      std::vector<std::string> details;
-      std::ranges::set_difference(split(csv_heading(kind, true)), split(columns),
-                                  std::back_inserter(details));
-      fmt::print("| {} | `{}` | `{}` |\n", set_words<ContactKinds>[i], columns, fmt::join(details, ","));
+      const std::vector<std::string> columns = csv_columns(kind, false);
+      std::vector<std::string> details = csv_columns(kind, true);
+      std::erase_if(details, [&](const std::string& name) {
+        return std::ranges::find(columns, name) != columns.end();
+      });
+      fmt::print("| {} | `{}` | `{}` |\n", set_words<ContactKinds>[i], fmt::join(columns, ","),
+                 fmt::join(details, ","));
     }
   });
 }

@@ -9,7 +9,7 @@ namespace supple::cli {
 /// The numbers of two objects whose descent in the narrow phase is reported (Figure 4 of the paper).
 using ObjectNumbers = std::array<std::uint32_t, 2>;
 
-/// Optional parts of the JSON.
+/// Optional parts of the JSON; `contact_details` also of the CSV.
 struct JsonContent {
   /// Options, and the times and counts of each frame: the parts that may differ between two runs with the
   /// same results.

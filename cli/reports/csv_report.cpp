@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
+#include <bit>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -29,39 +29,17 @@ void for_each_cell(bool details, Visitor visitor) {
   });
 }
 
-/// Calls `visitor(list, member)` for the list of the last of these kinds.
+/// Calls `visitor(list, member)` for the list of the last of these kinds: with penetration, the intersections
+/// are not the answer.
 template <class Visitor>
 void with_answer(ContactKinds kinds, Visitor visitor) {
-  ContactKinds last = ContactKinds::none;
-  const auto is_answer = [&](const auto& list) {
-    return list.answers != ContactKinds::none && contains(kinds, list.answers);
-  };
-  for_each_list([&](const auto& list, auto) {
-    if (is_answer(list)) last = std::max(last, list.answers);
-  });
+  const auto last = static_cast<ContactKinds>(std::bit_floor(static_cast<unsigned>(kinds)));
+  if (last == ContactKinds::none) return;
   for_each_list([&]<class Row>(const ResultList<Row>& list, auto member) {
     if constexpr (Described<Row>) {
-      if (is_answer(list) && list.answers == last) visitor(list, member);
+      if (list.answers == last) visitor(list, member);
     }
   });
-}
-
-template <Described Row>
-std::string heading_of(bool details) {
-  std::string heading = "frame";
-  for_each_cell<Row>(details, [&]<class Value>(const Field<Row, Value>& field) {
-    const char* const key = short_key(field.key);
-    if constexpr (std::is_same_v<Value, Vec3d>) {
-      heading += fmt::format(",{0}_x,{0}_y,{0}_z", key);
-    } else if constexpr (std::is_same_v<Value, Weights>) {
-      heading += fmt::format(",{0}0,{0}1,{0}2", key);
-    } else if constexpr (std::is_same_v<Value, Element>) {
-      heading += fmt::format(",{0}0,{0}1", key);
-    } else {
-      heading += fmt::format(",{}", key);
-    }
-  });
-  return heading;
 }
 
 template <Described Row>
@@ -94,10 +72,20 @@ void add_row(fmt::memory_buffer& rows, std::uint64_t frame, const Row& row, bool
 
 }  // namespace
 
-std::string csv_heading(ContactKinds kinds, bool details) {
-  std::string heading;
-  with_answer(kinds, [&]<class Row>(const ResultList<Row>&, auto) { heading = heading_of<Row>(details); });
-  return heading;
+std::vector<std::string> csv_columns(ContactKinds kinds, bool details) {
+  std::vector<std::string> columns{"frame"};
+  with_answer(kinds, [&]<class Row>(const ResultList<Row>&, auto) {
+    for_each_cell<Row>(details, [&]<class Value>(const Field<Row, Value>& field) {
+      std::string_view parts;
+      if constexpr (std::is_same_v<Value, Vec3d>) parts = "xyz";
+      if constexpr (std::is_same_v<Value, Weights>) parts = "012";
+      if constexpr (std::is_same_v<Value, Element>) parts = "01";
+      const std::string key = short_key(field.key);
+      if (parts.empty()) columns.push_back(key);
+      for (const char part : parts) columns.push_back(key + (part < 'a' ? "" : "_") + part);
+    });
+  });
+  return columns;
 }
 
 CsvReport::CsvReport(const std::string& file_name, const SceneOptions& options, bool details)
@@ -105,9 +93,11 @@ CsvReport::CsvReport(const std::string& file_name, const SceneOptions& options, 
       kinds_(options.contacts),
       has_kinds_(options.comparison.colliding_vertices),
       has_details_(details) {
-  const std::string heading = has_kinds_ ? "frame,a,b,kind,i,j" : csv_heading(kinds_, has_details_);
-  columns_ = static_cast<std::size_t>(std::ranges::count(heading, ',')) + 1;
-  std::fputs((heading + "\n").c_str(), file_.stream());
+  const std::vector<std::string> columns = has_kinds_
+                                               ? std::vector<std::string>{"frame", "a", "b", "kind", "i", "j"}
+                                               : csv_columns(kinds_, has_details_);
+  columns_ = columns.size();
+  fmt::print(file_.stream(), "{}\n", fmt::join(columns, ","));
 }
 
 void CsvReport::finish(bool is_truncated) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <vector>
 
 #include "base/output_file.hpp"
 #include "reports/report.hpp"
@@ -10,9 +11,8 @@
 
 namespace supple::cli {
 
-/// The names of the columns for contacts of these kinds, with commas between them: those of the last kind,
-/// since intersections are not the answer to `penetration`.
-std::string csv_heading(ContactKinds kinds, bool details);
+/// The names of the columns for contacts of one kind, with or without those of `--contact-details`.
+std::vector<std::string> csv_columns(ContactKinds kinds, bool details);
 
 /// Writes one row per contact, as docs/json.md describes: the frame, and the members of the record; vectors
 /// and weights only with `details`. With colliding vertices, one row per contact of triangles, per vertex and

@@ -50,7 +50,7 @@ void ImpactTables::print_steps() const {
                grouped(step.counts.edge_edge), step.earliest);
   }
   if (steps_with_contacts_ > steps_.size())
-    fmt::print("and {} in which something touches; --csv lists all\n",
+    fmt::print("and {} in which something touches; --json lists all\n",
                counted(steps_with_contacts_ - steps_.size(), "step"));
   fmt::print("\n");
 }
@@ -72,7 +72,7 @@ void ImpactTables::print_pairs(const Scene& scene) const {
                grouped(summary.counts.vertex_face), grouped(summary.counts.edge_edge));
   }
   if (rows.size() > most_rows)
-    fmt::print("and {} with fewer; --csv lists all\n", counted(rows.size() - most_rows, "pair"));
+    fmt::print("and {} with fewer; --json lists all\n", counted(rows.size() - most_rows, "pair"));
   fmt::print("\n{} that touch within a step\n\n", counted(contacts, "pair of elements", "pairs of elements"));
 }
 

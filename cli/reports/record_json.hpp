@@ -40,9 +40,8 @@ constexpr bool is_of_range(const Role& role) {
   return role.names == Names::first_row || (role.names == Names::rows && *role.list != 0);
 }
 
-/// Writes the members of a record by their keys. What a record refers to by ranges of other lists is
-/// left out: the caller writes it as lists of the record. `only_exact` leaves out what is
-/// rounded.
+/// Writes the members of a record by their keys. What a record refers to by ranges of other lists is left
+/// out: the caller writes it as lists of the record. `only_exact` leaves out what is rounded.
 template <Described Row>
 void write_fields(JsonWriter& json, const Row& row, bool only_exact = false) {
   for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {

@@ -202,10 +202,7 @@ void TextReport::print_pairs(const Scene& scene) const {
                pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(summary.frames),
                grouped(summary.triangle_pairs), grouped(summary.most), summary.frame_of_most);
   }
-  const bool is_in_csv = !contains(scene.options().contacts, ContactKinds::penetration);
-  if (left_out > 0)
-    fmt::print("and {} with fewer; {} lists all\n", counted(left_out, "pair"),
-               is_in_csv ? "--csv" : "--json");
+  if (left_out > 0) fmt::print("and {} with fewer; --json lists all\n", counted(left_out, "pair"));
   fmt::print("\n{} that {}; pairs of objects began to touch {} and separated {}\n\n",
              counted(triangle_pairs_, "triangle pair"), triangle_pairs_ == 1 ? "intersects" : "intersect",
              counted(begun_, "time"), counted(ended_, "time"));
