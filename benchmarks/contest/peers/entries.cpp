@@ -55,7 +55,7 @@ std::vector<Entry<ClothContestant>> other_cloth_contestants() {
   return entries;
 }
 
-std::vector<Entry<Contestant<ClothStep>>> other_near_cloth_contestants(double margin) {
+std::vector<Entry<Contestant<ClothStep>>> other_near_cloth_contestants([[maybe_unused]] double margin) {
   std::vector<Entry<Contestant<ClothStep>>> entries;
 #ifdef SUPPLE_CONTEST_EMBREE
   entries.push_back({"Embree", [margin] { return make_embree_near_cloth(margin); }});
