@@ -28,6 +28,20 @@ struct Description<ObjectPair> {
 };
 
 template <>
+struct Description<ContactGroup> {
+  static constexpr const char* name = "ContactGroup";
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    using Row = ContactGroup;
+    visit_field(visitor, "a", &Row::a, "Object a; the same as b for contacts of an object with itself",
+                role::object('a'));
+    visit_field(visitor, "b", &Row::b, "Object b", role::object('b'));
+    visit_field(visitor, "first_contact", &Row::first_contact, "First contact of the objects in its list");
+    visit_field(visitor, "contact_count", &Row::contact_count, "Number of contacts");
+  }
+};
+
+template <>
 struct Description<Contact> {
   static constexpr const char* name = "Contact";
   template <class Visitor>

@@ -53,7 +53,7 @@ struct RigidTransform {
 ///
 /// Spans: those of a result are valid until the next call of the function that found it, `detect` or
 /// `search`, and those of `collision_free_steps` until its next call. Nothing else ends them, except the
-/// destructor and an assignment.
+/// destructor and an assignment. `keep_result` makes them last.
 ///
 /// Threads: calls on one scene must not overlap, except calls of const functions. Different scenes are
 /// independent.
@@ -190,6 +190,11 @@ class Scene {
   std::span<const ObjectStep> collision_free_steps(const StepOptions& options = {});
   /// The result of the last `detect`.
   const DetectResult& result() const;
+  /// Takes the memory of this result out of the scene: its spans stay valid as long as what is returned.
+  /// `result` is then empty, as before the first step, and the next `detect` takes new memory; events go on.
+  /// Call it before the next `detect` to keep a result without a copy of its own. O(size of the lists),
+  /// because the scene keeps copies, from which `detect` takes the contacts of objects that do not move.
+  std::shared_ptr<const void> keep_result();
   /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of
   /// triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`;
   /// exact boxes, sorted along an axis or in a tree, exclude pairs that are apart. Quadratic at worst: about

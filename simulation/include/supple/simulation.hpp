@@ -158,6 +158,8 @@ class Simulation {
 
   /// The scene of the simulation. Only the simulation moves its objects.
   const Scene& scene() const;
+  /// `Scene::keep_result` of this scene.
+  std::shared_ptr<const void> keep_result();
   /// The positions of all vertices. They are valid until the next step. Of a rigid object, the first call
   /// after a step computes them, O(n), so calls for one object must not overlap.
   std::span<const Vec3d> positions(ObjectId object) const;

@@ -376,6 +376,9 @@ double Simulation::motion_seconds() const {
 const SimulationOptions& Simulation::options() const {
   return implementation_->options;
 }
+std::shared_ptr<const void> Simulation::keep_result() {
+  return implementation_->scene.keep_result();
+}
 const Scene& Simulation::scene() const {
   return implementation_->scene;
 }

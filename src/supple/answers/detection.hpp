@@ -29,6 +29,18 @@ class Detection {
   /// Adds the answers to `found`; the spans are valid until the next run.
   void list(DetectResult& found);
 
+  /// Calls `visit(list)` for each list to which `list` adds spans.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    pairs_.visit_lists(visit);
+    intersection_pass_.visit_lists(visit);
+    impact_pass_.visit_lists(visit);
+    proximity_pass_.visit_lists(visit);
+    penetration_pass_.visit_lists(visit);
+    untested_.visit_lists(visit);
+    visit(non_finite_);
+  }
+
   /// Those of the last run.
   const Question& question() const { return question_; }
   const ObjectPairs& pairs() const { return pairs_; }

@@ -21,6 +21,11 @@ class FirstContacts {
   bool choose(std::span<const ContinuousContact> all, std::uint64_t max_contacts,
               std::vector<ContactGroup>& groups);
   std::span<const ContinuousContact> contacts() const { return contacts_; }
+  /// Calls `visit(list)` for the list of the result.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    visit(contacts_);
+  }
   /// Keeps those contacts of one pair of objects from `begin` on that are the first of one of their elements,
   /// in canonical order. O(n log n).
   void keep_first(std::vector<ContinuousContact>& found, std::size_t begin);

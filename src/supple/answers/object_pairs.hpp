@@ -26,6 +26,11 @@ class ObjectPairs {
   /// By slot: the boxes that the broad phase compared, which may enclose motion, separation and margin.
   std::span<const Aabb> boxes() const { return boxes_; }
   const PairFinder& finder() const { return finder_; }
+  /// Calls `visit(list)` for each list of the result.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    visit(pairs_);
+  }
 
  private:
   void list_volumes(const Question& question, std::span<const VertexWays> ways);

@@ -75,6 +75,13 @@ class Pass {
     return largest;
   }
 
+  /// Calls `visit(list)` for each list of the result; passes add theirs.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    visit(groups_);
+    visit(records_);
+  }
+
  protected:
   static constexpr std::size_t list_count = std::tuple_size_v<decltype(std::declval<Worker>().sizes())>;
   using Outcomes = JobOutcomes<list_count>;

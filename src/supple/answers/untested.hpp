@@ -17,6 +17,11 @@ class UntestedKinds {
   /// Lists each requested kind that has nothing to test. `found` has the groups of all contacts. The span is
   /// valid until the next call.
   std::span<const UntestedKind> list(const World& world, const Question& question, const DetectResult& found);
+  /// Calls `visit(list)` for each list of the result.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    visit(untested_);
+  }
 
  private:
   std::optional<NothingToTest> nothing_to_test(const World& world, const Question& question,

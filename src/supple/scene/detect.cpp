@@ -1,4 +1,5 @@
 #include "core/error.hpp"
+#include "core/kept_lists.hpp"
 #include "core/stop_signal.hpp"
 #include "core/timer.hpp"
 #include "scene/scene_implementation.hpp"
@@ -93,6 +94,19 @@ const DetectResult& Scene::Implementation::search(const DetectRequest& request, 
   found.stats.total_seconds = total.lap();
   found_by_search_ = found;
   return found_by_search_;
+}
+
+std::shared_ptr<const void> Scene::Implementation::keep_result() {
+  const auto kept = std::make_shared<KeptLists>();
+  const auto visit_lists = [&](const auto& visit) {
+    detection.visit_lists(visit);
+    events_.visit_lists(visit);
+  };
+  visit_lists([&](const auto& list) { kept->copy(list); });
+  visit_lists([&](auto& list) { kept->swap(list); });
+  result = {};
+  detected_at_ = 0;
+  return kept;
 }
 
 void Scene::Implementation::remove(ObjectId id) {

@@ -21,6 +21,13 @@ class Events {
   /// once.
   void publish(DetectResult& found);
 
+  /// Calls `visit(list)` for each list to which `publish` adds spans.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    for (PairCache* const pairs : all_) pairs->visit_lists(visit);
+    manifold_pass_.visit_lists(visit);
+  }
+
   /// Call it before `release`; this may run out of memory.
   void prepare_release();
   /// The object is removed: its pairs end at the next step.

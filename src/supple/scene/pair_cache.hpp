@@ -26,6 +26,13 @@ class PairCache {
 
   /// Changes made by the last `update`, each list ascending. Valid until the next one.
   PairEvents events() const { return {begin_, stay_, end_}; }
+  /// Calls `visit(list)` for each list of `events`.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    visit(begin_);
+    visit(stay_);
+    visit(end_);
+  }
   /// The pairs of the last `update`.
   std::span<const ObjectPair> pairs() const { return pairs_; }
 

@@ -144,6 +144,9 @@ SafeStep Scene::max_step() {
 const DetectResult& Scene::result() const {
   return implementation_->result;
 }
+std::shared_ptr<const void> Scene::keep_result() {
+  return implementation_->keep_result();
+}
 VerifyReport Scene::verify(const CallLimits& limits) const {
   return implementation_->verify(limits);
 }

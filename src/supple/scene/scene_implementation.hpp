@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -22,6 +23,7 @@ class Scene::Implementation {
 
   const DetectResult& detect(const DetectRequest& request);
   const DetectResult& search(const DetectRequest& request, const PairFilter& only);
+  std::shared_ptr<const void> keep_result();
   void remove(ObjectId id);
   ImpactSearchOptions impact_options() const;
   /// Whether the objects are as in the last `detect` that succeeded.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "supple/difference_descriptions.hpp"
+#include "supple/query_descriptions.hpp"
 #include "supple/record_descriptions.hpp"
 
 namespace supple {
@@ -89,10 +90,19 @@ TEST(RecordDescriptions, HaveEveryMember) {
   expect_whole_description<EndedManifold>();
   expect_whole_description<NonFiniteVertex>();
   expect_whole_description<UntestedKind>();
+  expect_whole_description<ContactGroup>();
   expect_whole_description<Difference>();
   expect_whole_description<ContinuousDifference>();
   expect_whole_description<ProximityDifference>();
   expect_whole_description<PenetrationDifference>();
+  expect_whole_description<ClosestPoint>();
+  expect_whole_description<RayHit>();
+  expect_whole_description<ListedRayHit>();
+  expect_whole_description<Overlap>();
+  expect_whole_description<LimitingPair>();
+  expect_whole_description<ElementDistance>();
+  expect_whole_description<TriangleIntersection>();
+  expect_whole_description<Impact>();
 }
 
 }  // namespace

@@ -2,15 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "supple/error.hpp"
 #include "supple/models.hpp"
+#include "supple/record_descriptions.hpp"
 #include "supple/scene.hpp"
 #include "support/option_word.hpp"
 
@@ -58,12 +62,17 @@ class HeldSpans {
 
 class ResultSpans : public testing::TestWithParam<OptionWord<ContinuousListing>> {};
 
-TEST_P(ResultSpans, OnlyDetectEndsThem) {
+/// Options with which a result has all lists.
+SceneOptions all_lists(ContinuousListing listing) {
   constexpr ContactKinds all = ContactKinds::intersection | ContactKinds::continuous |
                                ContactKinds::proximity | ContactKinds::penetration;
-  SceneOptions options{.contacts = all, .continuous_listing = GetParam(), .manifolds = true};
+  SceneOptions options{.contacts = all, .continuous_listing = listing, .manifolds = true};
   options.comparison.colliding_vertices = true;
-  Scene scene(options);
+  return options;
+}
+
+TEST_P(ResultSpans, OnlyDetectEndsThem) {
+  Scene scene(all_lists(GetParam()));
   const TriangleMesh ball = make_icosphere(4);
   std::vector<Vec3d> up = ball.positions, broken = ball.positions;
   for (Vec3d& p : up) p = p + Vec3d{0.1, 0.7, 0.2};
@@ -137,6 +146,48 @@ TEST_P(ResultSpans, OnlyDetectEndsThem) {
   held.check("another search");
   other.set_vertex_groups(d, {}, {});
   EXPECT_EQ(other.detect().step, 2u);
+}
+
+/// A kept result outlives the next steps and the scene, and the steps are those of a scene that keeps none.
+TEST_P(ResultSpans, AreKeptOnRequest) {
+  const TriangleMesh ball = make_icosphere(4);
+  std::vector<Vec3d> moved = ball.positions;
+  const auto make = [&] {
+    Scene scene(all_lists(GetParam()));
+    for (int i = 0; i < 3; ++i) {
+      scene.add(ball, {.self_collision = true, .margin = 0.05, .solid = true});
+      scene.translate(scene.objects().back(), {0.6 * i, 0, 0});
+    }
+    return scene;
+  };
+  Scene plain = make();
+  std::optional<Scene> keeping = make();
+  HeldSpans held;
+  std::vector<std::shared_ptr<const void>> kept;
+  EXPECT_NE(keeping->keep_result(), nullptr);  // before the first step
+  for (int step = 0; step < 9; ++step) {
+    // In every third step nothing moves, and the contacts are those of the step before.
+    if (step % 3 != 2) {
+      for (Scene* const scene : {&plain, &*keeping})
+        scene->set_motion(scene->objects()[1], moved, ball.positions);
+    }
+    for (Vec3d& p : moved) p = p + Vec3d{0.02, 0.1, 0};
+    const DetectResult& wanted = plain.detect();
+    const DetectResult& found = keeping->detect();
+    EXPECT_EQ(found.step, wanted.step);
+    for_each_list([&](const auto& list, auto member) {
+      EXPECT_TRUE(std::ranges::equal(member(found), member(wanted))) << list.name << " of step " << step;
+    });
+    EXPECT_TRUE(std::ranges::equal(found.contact_events.stay, wanted.contact_events.stay));
+    EXPECT_TRUE(std::ranges::equal(found.ended_manifolds, wanted.ended_manifolds));
+    EXPECT_TRUE(keeping->verify().agrees());
+    held.hold(found);
+    kept.push_back(keeping->keep_result());
+    EXPECT_TRUE(keeping->result().contacts.empty());
+    EXPECT_THROW(keeping->verify(), Error);
+  }
+  keeping.reset();
+  EXPECT_GT(held.check("the end of the scene"), 100u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Listings, ResultSpans,

@@ -104,6 +104,11 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   std::span<const ContinuousContact> contacts() const {
     return lists_first() ? first_contacts_.contacts() : records_;
   }
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    Pass::visit_lists(visit);
+    first_contacts_.visit_lists(visit);
+  }
 
  private:
   friend Pass;

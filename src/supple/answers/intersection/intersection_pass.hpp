@@ -102,6 +102,14 @@ class IntersectionPass : public Pass<IntersectionPass, IntersectedObject, Inters
   std::span<const CollidingVertices> colliding_vertex_groups() const { return vertex_groups_; }
   std::span<const std::uint32_t> colliding_vertices() const { return vertices_; }
 
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    Pass::visit_lists(visit);
+    visit(points_);
+    visit(vertex_groups_);
+    visit(vertices_);
+  }
+
  private:
   friend Pass;
   using CollidingLeaves = IntersectionWorker::CollidingLeaves;

@@ -98,6 +98,13 @@ class ManifoldPass {
   std::span<const Manifold> manifolds() const { return lists_.manifolds; }
   std::span<const ManifoldPoint> points() const { return lists_.points; }
   std::span<const EndedManifold> ended() const { return ended_; }
+  /// Calls `visit(list)` for each list of the result.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    visit(lists_.manifolds);
+    visit(lists_.points);
+    visit(ended_);
+  }
 
  private:
   void add_curve(const DetectResult& result, std::uint32_t index);

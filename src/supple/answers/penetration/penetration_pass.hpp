@@ -49,6 +49,18 @@ class PenetrationPass {
   std::span<const std::uint32_t> vertices_on_surface() const { return on_surface_; }
   std::span<const ContainedPart> contained_parts() const { return parts_; }
   const CurveLists& curves() const { return curves_; }
+  /// Calls `visit(list)` for each list of the result.
+  template <class Visit>
+  void visit_lists(const Visit& visit) {
+    visit(groups_);
+    visit(penetrations_);
+    visit(on_surface_);
+    visit(parts_);
+    visit(curves_.curves);
+    visit(curves_.contacts);
+    visit(curves_.points);
+    visit(curves_.enclosed);
+  }
 
  private:
   /// The vertices of one object, `inner`, inside another one, and the curves of the two. The curves belong to
