@@ -2,7 +2,7 @@
 # Installs the Debian 12 packages for a build, the tests and the demo. --ci adds the packages of the checks,
 # clang and the sanitizers; --bench adds the libraries that benchmarks compare with; --coverage adds what
 # tools/coverage.py needs; --determinism adds the compilers and emulators of tools/check_determinism.py;
-# --without-viewer leaves out npm and the compiler for WebAssembly.
+# --python adds what builds and tests the Python package; --without-viewer leaves out npm and the compiler for WebAssembly.
 # Returns quickly when everything is installed.
 set -euo pipefail
 
@@ -23,6 +23,9 @@ if [ "${1:-}" != "--without-viewer" ]; then
 fi
 if [ "${1:-}" = "--ci" ]; then
   packages+=(git libclang-rt-19-dev clang-format python3-clang-19 python3-h5py chromium chromium-headless-shell)
+fi
+if [ "${1:-}" = "--ci" ] || [ "${1:-}" = "--python" ]; then
+  packages+=(python3-venv python3-dev)
 fi
 if [ "${1:-}" = "--bench" ]; then
   packages+=(git pkg-config libembree-dev libcgal-dev libfcl-dev libbullet-dev libode-dev)

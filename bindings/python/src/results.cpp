@@ -1,0 +1,112 @@
+
+#include "options.hpp"
+#include "records.hpp"
+#include "scene.hpp"
+#include "supple/difference_descriptions.hpp"
+
+namespace supple::python {
+namespace {
+
+/// The lists of groups, which `for_each_list` leaves out because they follow from the records.
+template <class Visit>
+void visit_other_lists(const DetectResult& found, const Visit& visit) {
+  visit("groups", found.groups);
+  visit("continuous_groups", found.continuous_groups);
+  visit("proximity_groups", found.proximity_groups);
+  visit("ended_manifolds", found.ended_manifolds);
+  visit("non_finite_vertices", found.non_finite_vertices);
+  visit("untested", found.untested);
+  visit("events/volume_stay", found.volume_events.stay);
+  visit("events/narrow_phase_stay", found.narrow_phase_events.stay);
+  visit("events/contact_stay", found.contact_events.stay);
+  visit("events/proximity_stay", found.proximity_events.stay);
+  visit("events/penetration_stay", found.penetration_events.stay);
+}
+
+/// Calls `visit(name, list)` for all lists of a result.
+template <class Visit>
+void visit_lists(const DetectResult& found, const Visit& visit) {
+  for_each_list([&](const auto& list, auto member) { visit(list.name, member(found)); });
+  visit_other_lists(found, visit);
+}
+
+nb::object table_of(const std::shared_ptr<Lists>& lists, const DetectResult& found, const std::string& name) {
+  nb::object table;
+  visit_lists(found, [&]<class Row>(const char* list, std::span<const Row> rows) {
+    if (name != list) return;
+    auto* const owner = new std::shared_ptr<Lists>(lists);
+    table = to_table(
+        rows, nb::capsule(owner, [](void* p) noexcept { delete static_cast<std::shared_ptr<Lists>*>(p); }));
+  });
+  if (!table.is_valid()) throw nb::attribute_error(("a result has no list '" + name + "'").c_str());
+  return table;
+}
+
+nb::dict stats_of(const StepStats& stats) {
+  nb::dict dict;
+  for_each_field<StepStats>([&]<class Value>(const Field<StepStats, Value>& field) {
+    if constexpr (Worded<Value>) {
+      dict[field.key] = word_of(stats.*field.member);
+    } else {
+      dict[field.key] = stats.*field.member;
+    }
+  });
+  return dict;
+}
+
+}  // namespace
+
+void bind_results(nb::module_& module) {
+  nb::class_<Result>(module, "Result")
+      .def(nb::init<>())
+      .def_prop_ro("step", [](const Result& r) { return r.found.step; })
+      .def_prop_ro("truncated", [](const Result& r) { return r.found.truncated; })
+      .def_prop_ro("stopped", [](const Result& r) { return r.found.stopped; })
+      .def("stats", [](const Result& r) { return stats_of(r.found.stats); })
+      .def("untested",
+           [](const Result& r) {
+             nb::list list;
+             for (const UntestedKind& each : r.found.untested)
+               list.append(nb::make_tuple(word_of(each.kind), word_of(each.reason)));
+             return list;
+           })
+      .def("counts",
+           [](const Result& r) {
+             nb::dict counts;
+             visit_lists(r.found, [&](const char* name, auto rows) { counts[name] = rows.size(); });
+             return counts;
+           })
+      .def("table",
+           [](const Result& r, const std::string& name) { return table_of(r.lists, r.found, name); });
+
+  module.def("lists", [] {
+    nb::dict lists;
+    for_each_list([&](const auto& list, auto) { lists[list.name] = nb::make_tuple(list.item, list.doc); });
+    return lists;
+  });
+  module.def("layouts", [] {
+    nb::dict layouts;
+    for_each_list([&]<class Row>(const ResultList<Row>&, auto) {
+      if constexpr (Described<Row>) add_layout<Row>(layouts);
+    });
+    add_layout<ContactGroup>(layouts);
+    add_layout<EndedManifold>(layouts);
+    add_layout<NonFiniteVertex>(layouts);
+    add_layout<UntestedKind>(layouts);
+    add_layout<Difference>(layouts);
+    add_layout<ContinuousDifference>(layouts);
+    add_layout<ProximityDifference>(layouts);
+    add_layout<PenetrationDifference>(layouts);
+    add_layout<Found<ClosestPoint>>(layouts);
+    add_layout<Found<RayHit>>(layouts);
+    add_layout<ListedRayHit>(layouts);
+    add_layout<Overlap>(layouts);
+    add_layout<LimitingPair>(layouts);
+    add_layout<Found<ElementDistance>>(layouts);
+    add_layout<Found<Impact>>(layouts);
+    add_layout<TriangleIntersection>(layouts);
+    return layouts;
+  });
+}
+
+}  // namespace supple::python

@@ -1,0 +1,380 @@
+#include "scene.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "arrays.hpp"
+#include "options.hpp"
+#include "records.hpp"
+#include "supple/difference_descriptions.hpp"
+
+namespace supple::python {
+namespace {
+
+using Alone = CallGuard::Alone;
+using Together = CallGuard::Together;
+
+ObjectOptions object_options_of(const nb::dict& keywords,
+                                const std::optional<List<std::uint32_t>>& same_vertex,
+                                const std::optional<Matrix<std::uint32_t, 2>>& edges,
+                                const std::optional<List<std::uint32_t>>& points) {
+  ObjectOptions options;
+  set_options(options, keywords, "add");
+  if (same_vertex) options.same_vertex.assign(same_vertex->data(), same_vertex->data() + same_vertex->size());
+  if (points) options.points.assign(points->data(), points->data() + points->size());
+  for (std::size_t i = 0; edges && i < edges->shape(0); ++i)
+    options.edges.push_back({edges->data()[2 * i], edges->data()[2 * i + 1]});
+  return options;
+}
+
+nb::object safe_step(const SafeStep& step) {
+  return nb::make_tuple(step.step, to_table(step.limit));
+}
+
+/// The vertices of both sides of each record, (n, 2, 3): an element with fewer vertices repeats its first
+/// one.
+template <class Row>
+nb::object vertices_of(const Scene& scene, const List<std::uint8_t>& bytes) {
+  if (bytes.size() % sizeof(Row) != 0) throw Error("vertices: the array does not have records of this kind");
+  const std::size_t count = bytes.size() / sizeof(Row);
+  std::vector<std::uint32_t> vertices(6 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Row row;
+    std::memcpy(&row, bytes.data() + i * sizeof(Row), sizeof(Row));
+    for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
+      const ElementVertices found = scene.vertices_of(row, side);
+      for (std::size_t k = 0; k < 3; ++k)
+        vertices[6 * i + (side == ContactSide::b ? 3 : 0) + k] = found[k < found.size() ? k : 0];
+    }
+  }
+  auto* const list = new std::vector<std::uint32_t>(std::move(vertices));
+  const nb::capsule owner(list, [](void* p) noexcept { delete static_cast<std::vector<std::uint32_t>*>(p); });
+  return to_array<std::uint32_t, 2, 3>(list->data(), count, owner);
+}
+
+nb::object positions_of_object(const Scene& scene, ObjectId id) {
+  std::vector<Vec3d> positions(scene.vertex_count(id));
+  for (std::uint32_t v = 0; v < positions.size(); ++v) positions[v] = scene.position(id, v);
+  return to_plain_array(std::move(positions));
+}
+
+nb::object triangles_of_object(const Scene& scene, ObjectId id) {
+  auto* const list = new std::vector<std::array<std::uint32_t, 3>>(scene.triangle_count(id));
+  const nb::capsule owner(
+      list, [](void* p) noexcept { delete static_cast<std::vector<std::array<std::uint32_t, 3>>*>(p); });
+  Contact triangle;
+  triangle.object_a = id;
+  for (triangle.triangle_a = 0; triangle.triangle_a < list->size(); ++triangle.triangle_a)
+    (*list)[triangle.triangle_a] = scene.vertices_of(triangle, ContactSide::a).ids;
+  return to_array<std::uint32_t, 3>(list->data(), list->size(), owner);
+}
+
+nb::dict report_of(const VerifyReport& report) {
+  nb::dict dict;
+  dict["stopped"] = report.stopped;
+  dict["triangle_pairs_checked"] = report.triangle_pairs_checked;
+  dict["intersecting_pairs"] = report.intersecting_pairs;
+  dict["element_pairs_checked"] = report.element_pairs_checked;
+  dict["touching_element_pairs"] = report.touching_element_pairs;
+  dict["proximity_pairs_checked"] = report.proximity_pairs_checked;
+  dict["near_pairs"] = report.near_pairs;
+  dict["vertex_triangle_pairs_checked"] = report.vertex_triangle_pairs_checked;
+  dict["inside_vertices"] = report.inside_vertices;
+  dict["differences"] = to_table(std::vector(report.differences));
+  dict["continuous_differences"] = to_table(std::vector(report.continuous_differences));
+  dict["proximity_differences"] = to_table(std::vector(report.proximity_differences));
+  dict["penetration_differences"] = to_table(std::vector(report.penetration_differences));
+  return dict;
+}
+
+}  // namespace
+
+nb::object vertices_of_records(const Scene& scene, const std::string& record,
+                               const List<std::uint8_t>& rows) {
+  if (record == "Contact") return vertices_of<Contact>(scene, rows);
+  if (record == "ContinuousContact") return vertices_of<ContinuousContact>(scene, rows);
+  if (record == "ProximityPair") return vertices_of<ProximityPair>(scene, rows);
+  if (record == "LimitingPair") return vertices_of<LimitingPair>(scene, rows);
+  throw Error("vertices: a " + record + " has no two elements");
+}
+
+DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const char* where) {
+  DetectRequest request;
+  for (const auto [key, value] : keywords) {
+    const auto keyword = nb::cast<std::string>(key);
+    if (keyword == "max_contacts") {
+      if (!value.is_none() && !nb::try_cast(value, request.max_contacts))
+        fail_value(where, "max_contacts", value, "None or a whole number from 0 on");
+      continue;
+    }
+    if (!set_option(options, keyword, value, where)) {
+      throw nb::type_error(
+          (std::string(where) + ": there is no option '" + keyword +
+           "'; the options are contacts, those of continuous contacts (supple.options"
+           "('ImpactOptions')), proximity_listing, element_kinds, continuous_listing, manifolds, "
+           "depths and max_contacts")
+              .c_str());
+    }
+    if (keyword == "contacts")
+      request.contacts = options.contacts;
+    else if (keyword == "proximity_listing")
+      request.proximity_listing = options.proximity_listing;
+    else if (keyword == "element_kinds")
+      request.element_kinds = options.element_kinds;
+    else if (keyword == "continuous_listing")
+      request.continuous_listing = options.continuous_listing;
+    else if (keyword == "manifolds")
+      request.manifolds = options.manifolds;
+    else if (keyword == "depths")
+      request.depths = options.depths;
+    else if (ImpactOptions impact; keyword == "impact" || set_option(impact, keyword, value, where))
+      request.impact = options.impact;
+    else
+      throw nb::type_error(
+          (std::string(where) + ": '" + keyword + "' is fixed when the scene is made").c_str());
+  }
+  return request;
+}
+
+PairFilter filter_of(nb::object function) {
+  if (function.is_none()) return {};
+  // The last copy may be destroyed without the GIL.
+  auto* const held = new nb::object(std::move(function));
+  const std::shared_ptr<nb::object> shared(held, [](nb::object* object) {
+    nb::gil_scoped_acquire acquire;
+    delete object;
+  });
+  return [shared](ObjectId a, ObjectId b) {
+    nb::gil_scoped_acquire acquire;
+    const nb::object answer = (*shared)(a, b);
+    bool accepts = false;
+    if (!nb::try_cast(answer, accepts)) {
+      throw nb::type_error("the pair filter must return True or False");
+    }
+    return accepts;
+  };
+}
+
+SceneCore::SceneCore(const nb::dict& keywords) {
+  SceneOptions options;
+  set_options(options, keywords, "Scene");
+  state_ = std::make_shared<SceneState>(options);
+}
+
+std::unique_ptr<Result> SceneCore::detect(const nb::dict& keywords, Stop* stop) {
+  DetectRequest request = request_of(keywords, scene().options(), "detect");
+  const Alone alone(guard());
+  auto result = std::make_unique<Result>();
+  result->found = run_stoppable(stop, [&](std::stop_token token) {
+    request.stop = std::move(token);
+    state_->last.leave(scene());
+    return scene().detect(request);
+  });
+  result->lists = state_->last.begin(state_);
+  return result;
+}
+
+/// Its lists are copied, so they need no scene.
+nb::object SceneCore::search(const nb::dict& keywords, nb::object only, Stop* stop) {
+  DetectRequest request = request_of(keywords, scene().options(), "search");
+  const PairFilter filter = filter_of(std::move(only));
+  const Alone alone(guard());
+  const DetectResult found = run_stoppable(stop, [&](std::stop_token token) {
+    request.stop = std::move(token);
+    return scene().search(request, filter);
+  });
+  nb::dict tables;
+  const auto copy = [&]<class Row>(const char* name, std::span<const Row> rows) {
+    tables[name] = to_table(std::vector<Row>(rows.begin(), rows.end()));
+  };
+  for_each_list([&](const auto& list, auto member) { copy(list.name, member(found)); });
+  tables["stopped"] = found.stopped;
+  tables["truncated"] = found.truncated;
+  return tables;
+}
+
+void bind_scene(nb::module_& module) {
+  nb::class_<ObjectId>(module, "ObjectId")
+      .def(nb::init<std::uint32_t, std::uint32_t>(), nb::arg("index"), nb::arg("generation") = 0)
+      .def_ro("index", &ObjectId::index)
+      .def_ro("generation", &ObjectId::generation);
+  nb::class_<Stop>(
+      module, "Stop",
+      "Stops calls from another thread: give it to a call as `stop`, and call `request` to end the call.")
+      .def(nb::init<>())
+      .def("request", [](Stop& stop) { stop.source.request_stop(); })
+      .def_prop_ro("requested", [](const Stop& stop) { return stop.source.stop_requested(); });
+
+  nb::class_<SceneCore> scene(module, "Scene");
+  const auto setter = [&](const char* name, auto set) { scene.def(name, set); };
+  scene.def(nb::init<nb::dict>());
+  scene.def(
+      "add",
+      [](SceneCore& core, const Array& positions, const Array& triangles, const nb::dict& options,
+         const std::optional<List<std::uint32_t>>& same_vertex,
+         const std::optional<Matrix<std::uint32_t, 2>>& edges,
+         const std::optional<List<std::uint32_t>>& points) {
+        const ObjectOptions object = object_options_of(options, same_vertex, edges, points);
+        const Alone alone(core.guard());
+        const PositionsView xyz = positions_of(positions);
+        const TrianglesView faces = triangles_of(triangles);
+        nb::gil_scoped_release release;
+        return core.scene().add(xyz, faces, object);
+      },
+      nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg().none());
+  setter("remove", [](SceneCore& core, ObjectId id) {
+    const Alone alone(core.guard());
+    core.scene().remove(id);
+    core.state().shared.erase(id);
+  });
+  setter("set_positions", [](SceneCore& core, ObjectId id, const Array& positions) {
+    const Alone alone(core.guard());
+    core.scene().set_positions(id, positions_of(positions));
+    core.state().shared.erase(id);
+  });
+  setter("set_vertices",
+         [](SceneCore& core, ObjectId id, const List<std::uint32_t>& vertices, const Array& positions) {
+           const Alone alone(core.guard());
+           core.scene().set_vertices(id, span_of(vertices), positions_of(positions));
+         });
+  setter("share_positions", [](SceneCore& core, ObjectId id, const Array& positions, nb::object array) {
+    const Alone alone(core.guard());
+    core.scene().share_positions(id, positions_of(positions));
+    core.state().shared[id] = std::move(array);
+  });
+  setter("set_motion", [](SceneCore& core, ObjectId id, const Array& from, const Array& to) {
+    const Alone alone(core.guard());
+    core.scene().set_motion(id, positions_of(from), positions_of(to));
+    core.state().shared.erase(id);
+  });
+  setter("translate", [](SceneCore& core, ObjectId id, double x, double y, double z) {
+    const Alone alone(core.guard());
+    core.scene().translate(id, {x, y, z});
+  });
+  setter("set_transform", [](SceneCore& core, ObjectId id, const Matrix<double, 4>& rows) {
+    if (rows.shape(0) < 3) throw Error("set_transform: the matrix must have the shape (3, 4) or (4, 4)");
+    RigidTransform transform;
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) transform.rotation[3 * r + c] = rows.data()[4 * r + c];
+      transform.translation[static_cast<int>(r)] = rows.data()[4 * r + 3];
+    }
+    const Alone alone(core.guard());
+    core.scene().set_transform(id, transform);
+  });
+  setter("set_static", [](SceneCore& core, ObjectId id, bool value) {
+    const Alone alone(core.guard());
+    core.scene().set_static(id, value);
+  });
+  setter("set_group", [](SceneCore& core, ObjectId id, std::uint32_t group, std::uint32_t mask) {
+    const Alone alone(core.guard());
+    core.scene().set_group(id, group, mask);
+  });
+  setter("set_margin", [](SceneCore& core, ObjectId id, double margin) {
+    const Alone alone(core.guard());
+    core.scene().set_margin(id, margin);
+  });
+  setter("set_min_separation", [](SceneCore& core, ObjectId id, double separation) {
+    const Alone alone(core.guard());
+    core.scene().set_min_separation(id, separation);
+  });
+  setter("set_self_collision", [](SceneCore& core, ObjectId id, bool enabled) {
+    const Alone alone(core.guard());
+    core.scene().set_self_collision(id, enabled);
+  });
+  setter("set_vertex_groups", [](SceneCore& core, ObjectId id, const List<std::uint32_t>& groups,
+                                 const List<std::uint32_t>& masks) {
+    const Alone alone(core.guard());
+    core.scene().set_vertex_groups(id, span_of(groups), span_of(masks));
+  });
+  scene.def(
+      "set_pair_filter",
+      [](SceneCore& core, nb::object function) {
+        const Alone alone(core.guard());
+        core.scene().set_pair_filter(filter_of(std::move(function)));
+      },
+      nb::arg().none());
+  scene.def("detect", &SceneCore::detect, nb::arg(), nb::arg().none());
+  scene.def("search", &SceneCore::search, nb::arg(), nb::arg().none(), nb::arg().none());
+  scene.def("earliest_impact", [](SceneCore& core) {
+    const Alone alone(core.guard());
+    return to_table([&] {
+      nb::gil_scoped_release release;
+      return core.scene().earliest_impact();
+    }());
+  });
+  scene.def("max_step", [](SceneCore& core) {
+    const Alone alone(core.guard());
+    return safe_step([&] {
+      nb::gil_scoped_release release;
+      return core.scene().max_step();
+    }());
+  });
+  scene.def("collision_free_step", [](SceneCore& core, double keep) {
+    const Alone alone(core.guard());
+    return safe_step([&] {
+      nb::gil_scoped_release release;
+      return core.scene().collision_free_step({keep});
+    }());
+  });
+  scene.def("collision_free_steps", [](SceneCore& core, double keep) {
+    const Alone alone(core.guard());
+    const auto steps = [&] {
+      nb::gil_scoped_release release;
+      return core.scene().collision_free_steps({keep});
+    }();
+    nb::list list;
+    for (const ObjectStep& each : steps)
+      list.append(nb::make_tuple(each.object, each.island, each.safe.step, to_table(each.safe.limit)));
+    return list;
+  });
+  scene.def(
+      "verify",
+      [](SceneCore& core, Stop* stop) {
+        const Together together(core.guard());
+        return report_of(run_stoppable(
+            stop, [&](std::stop_token token) { return core.scene().verify({std::move(token)}); }));
+      },
+      nb::arg().none());
+
+  scene.def("objects", [](SceneCore& core) {
+    const Together together(core.guard());
+    return core.scene().objects();
+  });
+  scene.def("contains", [](SceneCore& core, ObjectId id) { return core.scene().contains(id); });
+  scene.def("name", [](SceneCore& core, ObjectId id) { return core.scene().name(id); });
+  scene.def("vertex_count", [](SceneCore& core, ObjectId id) { return core.scene().vertex_count(id); });
+  scene.def("triangle_count", [](SceneCore& core, ObjectId id) { return core.scene().triangle_count(id); });
+  scene.def("positions", [](SceneCore& core, ObjectId id) {
+    const Together together(core.guard());
+    return positions_of_object(core.scene(), id);
+  });
+  scene.def("vertices_of", [](SceneCore& core, const std::string& record, const List<std::uint8_t>& rows) {
+    const Together together(core.guard());
+    return vertices_of_records(core.scene(), record, rows);
+  });
+  scene.def("triangles", [](SceneCore& core, ObjectId id) {
+    const Together together(core.guard());
+    return triangles_of_object(core.scene(), id);
+  });
+  scene.def("options", [](SceneCore& core) {
+    nb::dict dict;
+    for_each_leaf(
+        [&]<class Field>(const Field& field, const auto& value) {
+          using Value = std::remove_cvref_t<decltype(value)>;
+          if constexpr (Worded<Value>) {
+            dict[field.key] = word_of(value);
+          } else if constexpr (std::is_arithmetic_v<Value>) {
+            dict[field.key] = value;
+          }
+        },
+        core.scene().options());
+    return dict;
+  });
+  bind_queries(module, scene);
+}
+
+}  // namespace supple::python

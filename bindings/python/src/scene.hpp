@@ -1,0 +1,90 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "arrays.hpp"
+#include "calls.hpp"
+#include "supple/supple.hpp"
+
+namespace supple::python {
+
+namespace nb = nanobind;
+
+/// What a result of Python reads. The scene has its memory until the next `detect`, which then leaves it
+/// here.
+struct Lists {
+  std::shared_ptr<void> source;      ///< the scene or the simulation
+  std::shared_ptr<const void> kept;  ///< see `Scene::keep_result`
+};
+
+/// The last result that Python may hold.
+class LastLists {
+ public:
+  /// Call it before `detect`: when Python still holds the last result, its memory leaves the scene.
+  template <class Source>
+  void leave(Source& source) {
+    if (const auto lists = lists_.lock(); lists && !lists->kept) lists->kept = source.keep_result();
+  }
+  std::shared_ptr<Lists> begin(std::shared_ptr<void> source) {
+    auto lists = std::make_shared<Lists>(Lists{std::move(source), nullptr});
+    lists_ = lists;
+    return lists;
+  }
+
+ private:
+  std::weak_ptr<Lists> lists_;
+};
+
+/// A result with the memory of its lists.
+struct Result {
+  DetectResult found;
+  std::shared_ptr<Lists> lists;
+};
+
+struct SceneState {
+  explicit SceneState(const SceneOptions& options) : scene(options) {}
+
+  Scene scene;
+  CallGuard guard;
+  LastLists last;
+  std::map<ObjectId, nb::object> shared;  ///< arrays that the scene reads in place
+};
+
+/// The scene of Python.
+class SceneCore {
+ public:
+  explicit SceneCore(const nb::dict& options);
+
+  Scene& scene() { return state_->scene; }
+  SceneState& state() { return *state_; }
+  CallGuard& guard() { return state_->guard; }
+  std::unique_ptr<Result> detect(const nb::dict& request, Stop* stop);
+  nb::object search(const nb::dict& request, nb::object only, Stop* stop);
+
+ private:
+  std::shared_ptr<SceneState> state_;
+};
+
+/// The vertices of both sides of each record, (n, 2, 3); `record` is the name of the structure.
+nb::object vertices_of_records(const Scene& scene, const std::string& record, const List<std::uint8_t>& rows);
+/// A request from keywords: those of `DetectRequest`. `options` are those of the scene.
+DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const char* where);
+/// A filter that calls a function of Python, or none.
+PairFilter filter_of(nb::object function);
+
+void bind_scene(nb::module_& module);
+void bind_results(nb::module_& module);
+void bind_queries(nb::module_& module, nb::class_<SceneCore>& scene);
+void bind_elements(nb::module_& module);
+void bind_broad_phase(nb::module_& module);
+void bind_inspection(nb::module_& module);
+void bind_simulation(nb::module_& module);
+void bind_files(nb::module_& module);
+
+}  // namespace supple::python

@@ -1,0 +1,154 @@
+"""Collisions between many objects that bend: every contact, exactly."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from . import _core
+from ._broad_phase import BroadPhase, enclosing_boxes
+from ._check import CheckReport, FrameCheck, check
+from ._core import Error, MotionError, Stop
+from ._elements import (
+    edge_edge_distance,
+    first_contact_by_algebra,
+    first_impact,
+    intersect_triangles,
+    point_edge_distance,
+    point_point_distance,
+    point_triangle_distance,
+    triangles_intersect,
+)
+from ._generated import *  # noqa: F403
+from ._generated import CONTRACTS
+from ._inspection import Inspector, NodePairs
+from ._meshes import (
+    Mesh,
+    MeshPart,
+    compute_topology,
+    fault_of_solid,
+    is_open_at_seams,
+    load_mesh,
+    make_box,
+    make_cloth,
+    make_icosphere,
+    make_model,
+    make_torus,
+    model_names,
+    save_mesh,
+    split_into_parts,
+    vertices_at_same_position,
+    welded,
+)
+from ._recording import Frame, Recorder, Recording, find_first_difference, open, record  # noqa: A004
+from ._result import PairContacts, Result, SavedResult
+from ._scene import Object, ObjectStep, SafeStep, Scene, VerifyReport, WrongAnswer
+from ._simulation import MassSpringBody, SimulatedObject, Simulation, respond
+from ._tables import Record, Table, dtypes
+from ._view import view
+
+for _error in (Error, MotionError):
+    _error.__doc__ = CONTRACTS[_error.__name__]
+__version__: str = _core.version
+
+
+class Option(NamedTuple):
+    """An option: its keyword, the values, the default, one sentence and the unit."""
+
+    name: str
+    values: str
+    default: str
+    doc: str
+    unit: str
+
+
+def options(structure: str = "SceneOptions") -> list[Option]:
+    """The options of a structure: SceneOptions, ObjectOptions, ImpactOptions, StepOptions, SimulationOptions,
+    MassSpringOptions, MassSpringMotion, RigidMotion or ContactResponse."""
+    return [Option(*each) for each in _core.options(structure)]
+
+
+__all__ = [
+    "BoundingVolume",
+    "BroadPhase",
+    "BroadPhaseMethod",
+    "CheckReport",
+    "ContactKinds",
+    "Containment",
+    "ContinuousDifferenceFault",
+    "ContinuousListing",
+    "CurveKind",
+    "ElementKinds",
+    "ElementPairKind",
+    "Error",
+    "FeatureKind",
+    "Frame",
+    "FrameCheck",
+    "ImpactCertainty",
+    "Inspector",
+    "Integrator",
+    "IntersectionKind",
+    "Lasting",
+    "ManifoldSource",
+    "MassSpringBody",
+    "Mesh",
+    "MeshPart",
+    "MotionError",
+    "Neighbours",
+    "NodePairs",
+    "NothingToTest",
+    "Object",
+    "ObjectOctreeBuild",
+    "ObjectStep",
+    "Option",
+    "PairContacts",
+    "PairStage",
+    "PenetrationDepths",
+    "PenetrationDifferenceFault",
+    "ProximityDifferenceFault",
+    "ProximityListing",
+    "Record",
+    "Recorder",
+    "Recording",
+    "RegionSphereTest",
+    "Result",
+    "SafeStep",
+    "SavedResult",
+    "Scene",
+    "SimulatedObject",
+    "Simulation",
+    "SphereFit",
+    "Stop",
+    "Table",
+    "VerifyReport",
+    "WrongAnswer",
+    "check",
+    "compute_topology",
+    "edge_edge_distance",
+    "enclosing_boxes",
+    "fault_of_solid",
+    "find_first_difference",
+    "first_contact_by_algebra",
+    "first_impact",
+    "intersect_triangles",
+    "is_open_at_seams",
+    "load_mesh",
+    "make_box",
+    "make_cloth",
+    "make_icosphere",
+    "make_model",
+    "make_torus",
+    "model_names",
+    "open",
+    "options",
+    "point_edge_distance",
+    "point_point_distance",
+    "point_triangle_distance",
+    "record",
+    "respond",
+    "save_mesh",
+    "split_into_parts",
+    "triangles_intersect",
+    "vertices_at_same_position",
+    "view",
+    "welded",
+]

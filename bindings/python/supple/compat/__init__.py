@@ -1,0 +1,1 @@
+"""The same calls as other libraries: `compat.trimesh` and `compat.ipctk`."""
