@@ -9,12 +9,13 @@ BASE ?= HEAD
 
 SECONDS ?= 30
 
-.PHONY: help demo program experiment test build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
+.PHONY: help demo program experiment test test-python build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
 
 help:
 	@echo 'make demo     build the program, drop a cloth over a ball, collide nine objects, write a page that shows them'
 	@echo 'make program  only the program; with VIEWER=OFF without the viewer, so without npm and WebAssembly'
 	@echo 'make test     build, then every test but long ones, which .ci/run all runs'
+	@echo 'make test-python  the Python package with the libraries of make program, and its tests'
 	@echo 'make build    the release build: build/release/bin/supple'
 	@echo 'make fuzz     every fuzz target with sanitizers, for SECONDS=30 each'
 	@echo 'make coverage which lines and branches the tests and the corpora of the fuzz targets reach'
@@ -53,6 +54,11 @@ experiment: program
 # Without the tests that compile the library again and those that take long.
 test: build
 	ctest --preset release --label-exclude 'compiles|long'
+
+# The tests of the Python package, for which pip installs what they need in build/python.
+test-python: program
+	tools/install_dependencies.sh --python
+	tools/test_python.sh
 
 build: dependencies
 	$(configure_release)
@@ -100,6 +106,7 @@ check: experiment
 	tools/check_changelog.sh
 	tools/check_file_sizes.sh
 	tools/make_api.py --check
+	tools/make_python.py --check
 	tools/check_api.py
 	tools/generate_docs.sh --check build/release/bin/supple
 
@@ -116,6 +123,7 @@ docs/figures/%.svg: docs/figures/%.dot
 docs: experiment
 	tools/install_dependencies.sh --ci
 	tools/make_api.py
+	tools/make_python.py
 	tools/generate_docs.sh build/release/bin/supple
 
 clean:

@@ -4,6 +4,7 @@
 #include <nanobind/stl/string.h>
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -144,14 +145,20 @@ bool set_option(Struct& options, const std::string& keyword, nb::handle value, c
       is_set = true;
     }
   });
-  if (is_set) return true;
-  for_each_leaf(
-      [&](const auto& field, auto& member) {
-        if (is_set || keyword != field.key) return;
-        member = value_of<std::remove_cvref_t<decltype(member)>>(value, field, where);
-        is_set = true;
-      },
-      options);
+  // Members of nested structures: by their keys, which are unique, or by names that are.
+  const auto set_leaf = [&](const auto& is_meant) {
+    for_each_leaf(
+        [&](const auto& field, auto& member) {
+          if (is_set || !is_meant(field)) return;
+          member = value_of<std::remove_cvref_t<decltype(member)>>(value, field, where);
+          is_set = true;
+        },
+        options);
+  };
+  std::size_t same_name = 0;
+  for_each_leaf([&](const auto& field, const auto&) { same_name += keyword == field.name ? 1 : 0; }, options);
+  if (!is_set) set_leaf([&](const auto& field) { return keyword == field.key; });
+  if (!is_set && same_name == 1) set_leaf([&](const auto& field) { return keyword == field.name; });
   return is_set;
 }
 
