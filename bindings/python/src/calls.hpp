@@ -54,18 +54,30 @@ class CallGuard {
   /// The same for calls that change nothing, several at the same time.
   class Together {
    public:
-    explicit Together(CallGuard& guard) : guard_(guard) {
+    explicit Together(CallGuard& guard) : Together(guard, false) {}
+    ~Together() {
+      if (locked_) guard_.mutex_.unlock_shared();
+    }
+    Together(const Together&) = delete;
+
+   protected:
+    Together(CallGuard& guard, bool is_own_call) : guard_(guard), locked_(!is_own_call) {
+      if (is_own_call) return;
       guard.check();
       if (!guard.mutex_.try_lock_shared()) {
         nb::gil_scoped_release release;
         guard.mutex_.lock_shared();
       }
     }
-    ~Together() { guard_.mutex_.unlock_shared(); }
-    Together(const Together&) = delete;
 
    private:
     CallGuard& guard_;
+    const bool locked_;
+  };
+  /// The same for names and counts, which functions that the object calls may read.
+  class Reading : public Together {
+   public:
+    explicit Reading(CallGuard& guard) : Together(guard, guard.caller_ == std::this_thread::get_id()) {}
   };
 
  private:

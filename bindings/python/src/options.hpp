@@ -28,11 +28,6 @@ struct IsOptional : std::false_type {};
 template <class Value>
 struct IsOptional<std::optional<Value>> : std::true_type {};
 
-template <class Value>
-bool convert(nb::handle from, Value& to) {
-  return nb::try_cast(from, to);
-}
-
 /// The member's value from a Python object: a word or a number of an enumeration, several words of a set, a
 /// number, a text, a truth value, three numbers of a vector, four of a cube, or None for no value.
 template <class Value, class Field>

@@ -16,6 +16,7 @@ namespace supple::python {
 namespace {
 
 using Alone = CallGuard::Alone;
+using Reading = CallGuard::Reading;
 using Together = CallGuard::Together;
 
 ObjectOptions object_options_of(const nb::dict& keywords,
@@ -209,6 +210,11 @@ void bind_scene(nb::module_& module) {
       .def("request", [](Stop& stop) { stop.source.request_stop(); })
       .def_prop_ro("requested", [](const Stop& stop) { return stop.source.stop_requested(); });
 
+  module.def("rotation_of_quaternion", [](double x, double y, double z, double w) {
+    const auto& r = RigidTransform::from_quaternion(x, y, z, w).rotation;
+    return to_plain_array(std::vector<double>(r.begin(), r.end()));
+  });
+
   nb::class_<SceneCore> scene(module, "Scene");
   const auto setter = [&](const char* name, auto set) { scene.def(name, set); };
   scene.def(nb::init<nb::dict>());
@@ -344,10 +350,22 @@ void bind_scene(nb::module_& module) {
     const Together together(core.guard());
     return core.scene().objects();
   });
-  scene.def("contains", [](SceneCore& core, ObjectId id) { return core.scene().contains(id); });
-  scene.def("name", [](SceneCore& core, ObjectId id) { return core.scene().name(id); });
-  scene.def("vertex_count", [](SceneCore& core, ObjectId id) { return core.scene().vertex_count(id); });
-  scene.def("triangle_count", [](SceneCore& core, ObjectId id) { return core.scene().triangle_count(id); });
+  scene.def("contains", [](SceneCore& core, ObjectId id) {
+    const Reading reading(core.guard());
+    return core.scene().contains(id);
+  });
+  scene.def("name", [](SceneCore& core, ObjectId id) {
+    const Reading reading(core.guard());
+    return core.scene().name(id);
+  });
+  scene.def("vertex_count", [](SceneCore& core, ObjectId id) {
+    const Reading reading(core.guard());
+    return core.scene().vertex_count(id);
+  });
+  scene.def("triangle_count", [](SceneCore& core, ObjectId id) {
+    const Reading reading(core.guard());
+    return core.scene().triangle_count(id);
+  });
   scene.def("positions", [](SceneCore& core, ObjectId id) {
     const Together together(core.guard());
     return positions_of_object(core.scene(), id);

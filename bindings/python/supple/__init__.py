@@ -20,6 +20,7 @@ from ._elements import (
 )
 from ._generated import *  # noqa: F403
 from ._generated import CONTRACTS
+from ._experiment import Experiment, experiment
 from ._inspection import Inspector, NodePairs
 from ._meshes import (
     Mesh,
@@ -41,7 +42,7 @@ from ._meshes import (
 )
 from ._recording import Frame, Recorder, Recording, find_first_difference, open, record  # noqa: A004
 from ._result import PairContacts, Result, SavedResult
-from ._scene import Object, ObjectStep, SafeStep, Scene, VerifyReport, WrongAnswer
+from ._scene import Object, ObjectStep, SafeStep, Scene, VerifyReport, WrongAnswer, rigid_transform
 from ._simulation import MassSpringBody, SimulatedObject, Simulation, respond
 from ._tables import Record, Table, dtypes
 from ._view import view
@@ -80,6 +81,7 @@ __all__ = [
     "ElementKinds",
     "ElementPairKind",
     "Error",
+    "Experiment",
     "FeatureKind",
     "Frame",
     "FrameCheck",
@@ -124,6 +126,7 @@ __all__ = [
     "check",
     "compute_topology",
     "edge_edge_distance",
+    "experiment",
     "enclosing_boxes",
     "fault_of_solid",
     "find_first_difference",
@@ -144,6 +147,7 @@ __all__ = [
     "point_point_distance",
     "point_triangle_distance",
     "record",
+    "rigid_transform",
     "respond",
     "save_mesh",
     "split_into_parts",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterator, NamedTuple
+from typing import Any, Collection, Iterator, NamedTuple
 
 from . import _core
 from ._tables import Table, dtypes, table
@@ -16,6 +16,7 @@ SHORT = {
 }
 ANSWERS = ("contacts", "continuous_contacts", "proximity_pairs", "penetrations")
 _LISTS: dict[str, tuple[str, str]] = _core.lists()
+_NAMES: dict[str, int] = _core.Result().counts()
 
 
 class PairContacts(NamedTuple):
@@ -34,7 +35,7 @@ class _Lists:
     def _list(self, name: str) -> Any:
         raise NotImplementedError
 
-    def _names(self) -> list[str]:
+    def _names(self) -> Collection[str]:
         raise NotImplementedError
 
     def __getattr__(self, name: str) -> Any:
@@ -99,8 +100,8 @@ class Result(_Lists):
             self._cache[name] = table(self._core.table(name), self._scene)
         return self._cache[name]
 
-    def _names(self) -> list[str]:
-        return list(self._core.counts())
+    def _names(self) -> Collection[str]:
+        return _NAMES
 
     def _counts(self) -> dict[str, int]:
         return dict(self._core.counts())

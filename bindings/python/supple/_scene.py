@@ -130,9 +130,8 @@ removed. It must be an array whose memory the scene can read: an array that had 
     )
     def share_positions(self, positions: Any) -> None:
         array = _arrays.positions(positions)
-        given = _arrays.as_numpy(positions, "positions")
-        if not np.shares_memory(array, given) and array.size:
-            raise Error(f"positions of type {given.dtype} cannot be shared; give float32 or float64")
+        if array is not positions and not np.may_share_memory(array, _arrays.as_numpy(positions, "positions")) and array.size:
+            raise Error("these positions cannot be shared, because they are converted; give an array of float32 or float64")
         self._scene._core.share_positions(self._id, array, array)
 
     @contract("Scene::set_motion")
@@ -148,7 +147,7 @@ removed. It must be an array whose memory the scene can read: an array that had 
     @contract(
         "Scene::set_transform",
         """`transform` is a (4, 4) or (3, 4) matrix: the rotation in the first three
-columns, the translation in the last one. `supple.rotation` makes the rotation of a quaternion.""",
+columns, the translation in the last one. `supple.rigid_transform` makes that of a quaternion.""",
     )
     def set_transform(self, transform: Any) -> None:
         matrix = _arrays.as_numpy(transform, "the transform")
@@ -206,6 +205,17 @@ columns, the translation in the last one. `supple.rotation` makes the rotation o
         return f"<supple.Object {self.index} {self.name!r}: {self.vertex_count} vertices, {self.triangle_count} triangles>"
 
 
+@contract(
+    "RigidTransform::from_quaternion",
+    "Returns a (4, 4) matrix for `Object.set_transform`.",
+)
+def rigid_transform(x: float, y: float, z: float, w: float, translation: Any = (0, 0, 0)) -> npt.NDArray[np.float64]:
+    matrix = np.eye(4)
+    matrix[:3, :3] = _core.rotation_of_quaternion(x, y, z, w).reshape(3, 3)
+    matrix[:3, 3] = _arrays.doubles(translation, "the translation", 3)
+    return matrix
+
+
 PairFilter = Callable[[Object, Object], bool]
 
 
@@ -229,7 +239,7 @@ class Scene:
     def __init__(self, **options: Any) -> None:
         self._core = _core.Scene(options)
         self._objects: dict[int, Object] = {}
-        self._result = Result(_core.Result(), self._core)
+        self._result = self._no_result = Result(_core.Result(), self._core)
 
     def add(
         self,
@@ -286,6 +296,8 @@ run without it. It must not call the scene. What it raises ends the call of the 
     def detect(self, *, stop: Stop | None = None, **request: Any) -> Result:
         """Finds all contacts; see the options of `DetectRequest`: `contacts`, `max_contacts`, those of continuous
         contacts, ... The lists of the last result stay valid as long as you hold the result or one of them."""
+        # Nothing of the last result is kept unless somebody holds it.
+        self._result = self._no_result
         self._result = Result(self._core.detect(request, stop), self._core)
         return self._result
 

@@ -74,7 +74,7 @@ class Simulation:
             options["border"] = _arrays.doubles(options["border"], "the border", 2, 3)
         self._core = _core.Simulation(options)
         self._objects: dict[int, SimulatedObject] = {}
-        self._result = Result(_core.Result(), self._core)
+        self._result = self._no_result = Result(_core.Result(), self._core)
 
     def add(
         self,
@@ -132,11 +132,13 @@ class Simulation:
 
     @contract("Simulation::detect")
     def detect(self, *, stop: Stop | None = None, **request: Any) -> Result:
+        self._result = self._no_result
         self._result = Result(self._core.detect(request, stop), self._core)
         return self._result
 
     @contract("Simulation::step")
     def step(self, *, stop: Stop | None = None, **request: Any) -> Result:
+        self._result = self._no_result
         self._result = Result(self._core.step(request, stop), self._core)
         return self._result
 

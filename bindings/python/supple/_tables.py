@@ -94,15 +94,13 @@ class Table(np.ndarray):
     `table[mask]` a table.
     """
 
-    record: str
-    _scene: Any
-    _vertices: npt.NDArray[np.uint32] | None
+    record: str = ""
+    _scene: Any = None
+    _vertices: npt.NDArray[np.uint32] | None = None
 
     def __array_finalize__(self, base: Any) -> None:
-        same = isinstance(base, Table) and self.dtype == base.dtype
-        self.record = base.record if same else ""
-        self._scene = base._scene if same else None
-        self._vertices = None
+        if isinstance(base, Table) and self.dtype == base.dtype:
+            self.record, self._scene = base.record, base._scene
 
     @property
     def columns(self) -> list[str]:
@@ -124,22 +122,22 @@ class Table(np.ndarray):
             return self._vertices_of_elements()
         names = self.dtype.names or ()
         if key in names:
-            return super().__getitem__(key).view(np.ndarray)
+            return np.ndarray.view(self, np.ndarray)[key]
         if key in _SIDES and f"{key}_a" in names and f"{key}_b" in names:
             return self._both_sides(key)
         raise KeyError(f"a table of {self.record} has no column '{key}'; it has {', '.join(self.columns)}")
 
     def _both_sides(self, key: str) -> npt.NDArray[Any]:
         (kind, at), (_, behind) = (self.dtype.fields[f"{key}_{side}"][:2] for side in "ab")  # type: ignore[index]
-        if behind < at:
-            at, behind = behind, at
-        shape, scalar = kind.shape, kind.base
-        both = np.dtype(
-            {"names": ["both"], "formats": [(scalar, (1,))], "offsets": [at], "itemsize": self.dtype.itemsize}
-        )
-        first = np.ndarray.view(self, np.ndarray).view(both)["both"]
-        strides = (self.strides[0], behind - at, *(scalar.itemsize for _ in shape))
-        return np.lib.stride_tricks.as_strided(first, (len(self), 2, *shape), strides, writeable=False)
+        strides = (self.strides[0], behind - at, *(kind.base.itemsize for _ in kind.shape))
+        shape = (len(self), 2, *kind.shape)
+        if not len(self):
+            return np.empty(shape, kind.base)
+        plain = np.ndarray.view(self, np.ndarray)
+        if not plain.flags.c_contiguous:
+            plain = np.ascontiguousarray(plain)
+            strides = (plain.strides[0], *strides[1:])
+        return np.ndarray(shape, kind.base, plain.view(np.uint8), at, strides)
 
     def _vertices_of_elements(self) -> npt.NDArray[np.uint32]:
         if self._vertices is None:
@@ -235,7 +233,8 @@ def table(raw: tuple[str | None, npt.NDArray[Any]], scene: Any = None) -> Any:
     record, memory = raw
     if record is None:
         return memory
-    made = memory.view(dtypes[record]).view(Table)
+    dtype = dtypes[record]
+    made = np.ndarray.__new__(Table, len(memory) // dtype.itemsize, dtype, memory)
     made.record, made._scene = record, scene
     return made
 

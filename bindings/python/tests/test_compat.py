@@ -197,6 +197,17 @@ def test_pages_of_the_viewer(program, tmp_path):
         supple.view(tmp_path / "missing.h5")
 
 
+def test_experiments(program, tmp_path):
+    found = supple.experiment("claims", tmp_path / "claims", quick=True)
+    assert found.page is not None and found.tables and "rows)" in repr(found)
+    again = supple.Experiment(tmp_path / "claims")
+    assert again.tables.keys() == found.to_pandas().keys() == found.tables.keys()
+    with pytest.raises(supple.Error, match="no tables"):
+        supple.Experiment(tmp_path)
+    with pytest.raises(supple.Error, match="foo"):
+        supple.experiment("foo")
+
+
 def test_the_command(program):
     import subprocess
     import sys

@@ -270,6 +270,10 @@ def test_transforms(sphere):
     np.testing.assert_allclose(a.positions, x @ matrix[:3, :3].T + matrix[:3, 3])
     a.translate([1, 0, 0])
     np.testing.assert_allclose(a.positions, x @ matrix[:3, :3].T + matrix[:3, 3] + [1, 0, 0])
+    a.set_transform(supple.rigid_transform(0, 0, 1, 1, (1, 2, 3)))
+    np.testing.assert_allclose(a.positions, x @ matrix[:3, :3].T + matrix[:3, 3], atol=1e-15)
+    with pytest.raises(supple.Error, match="not zero"):
+        supple.rigid_transform(0, 0, 0, 0)
     for wrong in (np.eye(3), np.eye(4) * 2, np.full((4, 4), np.nan)):
         with pytest.raises(supple.Error):
             a.set_transform(wrong)
@@ -314,6 +318,8 @@ def test_filters(sphere):
         scene.set_pair_filter(broken)
         with pytest.raises(error):
             scene.detect()
+    scene.set_pair_filter(lambda p, q: p.name == "a" and q.vertex_count > 3)
+    assert len(scene.detect().contacts) > 0
     scene.set_pair_filter(None)
     assert len(scene.detect().contacts) > 0 and scene.verify()
     found = scene.search(contacts="intersection", only=lambda p, q: False)
@@ -398,6 +404,7 @@ def test_results_are_pickled(sphere):
 
 
 def test_pandas(sphere):
+    pytest.importorskip("pandas")
     scene, *_ = two_spheres(sphere)
     frames = scene.detect().to_pandas()
     table = frames["proximity_pairs"]
