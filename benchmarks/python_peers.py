@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """The Python package against other Python packages, as far as they are installed, in one run.
 
-usage: python_peers.py [--rounds N] [--only NAME]... [--save]
+usage: python_peers.py [--rounds N] [--only NAME]... [--save MACHINE]
 
 Each contestant does the same work on one thread where it lets choose, in turn; the table has medians of wall-clock
 times, and the ratio to the package with the lowest and the highest of the rounds. Run it with PYTHONPATH=build/release/python.
-SUPPLE_DATA names the folder of the cloths and of the bunny. --save writes benchmarks/results/python/<date>.csv.
+SUPPLE_DATA names the folder of the cloths. --save writes benchmarks/results/<date>-MACHINE-python.csv.
 
-    overhead        the time of a frame outside of C++: 9 spheres of 18,000 triangles, and an empty scene
+    overhead        the time of a frame outside of C++: 9 spheres of 18,000 and of 69,620 triangles, and an empty scene
+    threads         two scenes in two threads against one after the other
     frames          9 deforming spheres of 18,000 triangles: all intersecting pairs of triangles of each frame
     proximity       cloth-ball: all pairs within a distance; and the safe step between two frames
     closest         closest points and signed distances of many points to a sphere of 69,620 triangles
@@ -20,7 +21,6 @@ import datetime
 import importlib.metadata
 import os
 import pathlib
-import platform
 import statistics
 import sys
 import time
@@ -28,6 +28,7 @@ import time
 import numpy as np
 
 import supple
+from contest import git, processor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = pathlib.Path(os.environ.get("SUPPLE_DATA", ROOT.parent / "shared/data"))
@@ -67,9 +68,9 @@ def rows_of(work, times, note=""):
                f"{statistics.median(ratios):.2f} ({ratios[0]:.2f} – {ratios[-1]:.2f})", note if name == next(iter(times)) else ""]
 
 
-def spheres(frames):
-    """The positions of 9 deforming spheres of 18,000 triangles in each frame, and their triangles."""
-    ball = supple.make_icosphere(30)
+def spheres(frames, frequency=30):
+    """The positions of 9 deforming spheres of 20 frequency² triangles in each frame, and their triangles."""
+    ball = supple.make_icosphere(frequency)
     x, faces = np.asarray(ball.positions), np.asarray(ball.triangles).astype(np.int64)
     places = np.array([[i % 3, i // 3, 0] for i in range(9)]) * [1.85, 1.85, 0]
     wave = [[x * (1 + 0.05 * np.sin(3 * x[:, :1] + 0.7 * i + 0.3 * f)) + places[i] for i in range(9)] for f in range(frames)]
@@ -77,7 +78,16 @@ def spheres(frames):
 
 
 def overhead(rounds):
-    wave, faces = spheres(8)
+    for frequency in (30, 59):
+        yield from overhead_of_spheres(rounds, frequency)
+    empty = supple.Scene(threads=1)
+    calls = 2000
+    microseconds = [1e3 * timed(lambda: [empty.detect() for _ in range(calls)])[0] / calls for _ in range(rounds)]
+    yield ["an empty detect, µs", "supple", f"{statistics.median(microseconds):.3g}", "", f"of {calls} calls"]
+
+
+def overhead_of_spheres(rounds, frequency):
+    wave, faces = spheres(8, frequency)
     scene = supple.Scene(threads=1)
     objects = [scene.add(x, faces) for x in wave[0]]
     scene.detect()
@@ -96,13 +106,31 @@ def overhead(rounds):
             whole.append(milliseconds)
             inside.append(1e3 * result.stats["total_seconds"])
     share = sorted((a - b) / b for a, b in zip(whole, inside))
-    yield ["a frame of 9 × 18,000", "supple", f"{statistics.median(whole):.4g}",
+    yield [f"a frame of 9 × {len(faces):,}", "supple", f"{statistics.median(whole):.4g}",
            f"{100 * statistics.median(share):.2f} % ({100 * share[len(share) // 10]:.2f} – {100 * share[-1 - len(share) // 10]:.2f})",
            "time outside of Scene::detect, of it; 10th to 90th percentile"]
-    empty = supple.Scene(threads=1)
-    calls = 2000
-    milliseconds = [timed(lambda: [empty.detect() for _ in range(calls)])[0] / calls for _ in range(rounds)]
-    yield ["an empty detect", "supple", f"{statistics.median(milliseconds):.3g}", "", "of 2,000 calls"]
+
+
+def threads(rounds):
+    from concurrent.futures import ThreadPoolExecutor
+
+    wave, faces = spheres(4)
+    scenes = [supple.Scene(threads=1) for _ in range(2)]
+    for scene in scenes:
+        for x in wave[0]:
+            scene.add(x, faces)
+
+    def run(scene):
+        for _ in range(10):
+            for positions in wave:
+                for each, x in zip(scene.objects, positions):
+                    each.share_positions(x)
+                scene.detect()
+
+    with ThreadPoolExecutor(2) as pool:
+        times, _ = race({"two threads": lambda: list(pool.map(run, scenes)),
+                         "one after the other": lambda: [run(scene) for scene in scenes]}, rounds)
+    yield from rows_of("40 frames of two scenes of 9 × 18,000", times)
 
 
 def frames(rounds):
@@ -286,14 +314,15 @@ def self_contacts(rounds):
     yield from rows_of(f"16 bodies of {len(faces):,} triangles: loss and gradient", times, f"{count} intersecting pairs")
 
 
-WORK = {"overhead": overhead, "frames": frames, "proximity": proximity, "closest": closest, "self": self_contacts}
+PACKAGES = ("numpy", "python-fcl", "ipctk", "open3d", "libigl", "warp-lang", "torch")
+WORK = {"overhead": overhead, "threads": threads, "frames": frames, "proximity": proximity, "closest": closest, "self": self_contacts}
 
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__.split("usage: ")[1].split("\n\n")[0])
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--only", action="append", choices=WORK, default=[])
-    parser.add_argument("--save", action="store_true")
+    parser.add_argument("--save", metavar="MACHINE")
     arguments = parser.parse_args()
     table = [["work", "package", "ms", "ratio (lowest – highest)", "note"]]
     for name in arguments.only or WORK:
@@ -301,13 +330,15 @@ def main():
             table.append(row)
             print(" | ".join(row), flush=True)
     if arguments.save:
-        path = ROOT / f"benchmarks/results/python/{datetime.date.today()}.csv"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        versions = [f"{name} {importlib.metadata.version(name)}" for name in
-                    ("numpy", "python-fcl", "ipctk", "open3d", "libigl", "warp-lang", "torch") if has_version(name)]
+        versions = [f"{name} {importlib.metadata.version(name)}" for name in PACKAGES if has_version(name)]
+        path = ROOT / f"benchmarks/results/{datetime.date.today()}-{arguments.save}-python.csv"
         with path.open("w", newline="", encoding="utf-8") as file:
-            file.write(f"# supple {supple.__version__}; {platform.processor() or platform.machine()}; {', '.join(versions)}\n")
-            csv.writer(file).writerows(table)
+            for key, value in {"date": datetime.date.today(), "commit": git("rev-parse", "--short", "HEAD"),
+                               "machine": processor(), "compiler": "g++ 12, Debian 12, Release",
+                               "command": "benchmarks/python_peers.py " + " ".join(sys.argv[1:]),
+                               "packages": f"Python {sys.version.split()[0]}, " + ", ".join(versions)}.items():
+                file.write(f"# {key}: {value}\n")
+            csv.writer(file, lineterminator="\n").writerows(table)
     return 0
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds the compiled module of the Python package in build/BUILD (default: release) and runs the tests of the
 # package there, with the Python packages of bindings/python/tests/requirements.txt in a virtual environment.
-# Further arguments go to pytest: tools/test_python.sh release -k hypothesis
+# Further arguments go to pytest: tools/test_python.sh release -k hypothesis. SUPPLE_TEST_TORCH=1 installs PyTorch,
+# without which its tests are skipped.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-release}
@@ -14,6 +15,8 @@ if ! cmp -s "$requirements" "$environment/requirements.txt"; then
   "$environment/bin/pip" install --quiet --disable-pip-version-check -r "$requirements"
   cp "$requirements" "$environment"
 fi
+# The tests of supple.torch, whose package has gigabytes.
+[ -z "${SUPPLE_TEST_TORCH:-}" ] || "$environment/bin/pip" install --quiet --disable-pip-version-check torch
 cmake --preset "$build" -DSUPPLE_BUILD_PYTHON=ON "-DPython_EXECUTABLE=$PWD/$environment/bin/python" >/dev/null
 cmake --build --preset "$build" -j "$(nproc)" --target supple_python
 export PYTHONPATH=$PWD/build/$build/python SUPPLE_PROGRAM=${SUPPLE_PROGRAM:-$PWD/build/release/bin/supple}

@@ -83,7 +83,9 @@ class CollisionMesh:
         swap = kinds[:, 1] > kinds[:, 0]
         kinds = np.where(swap[:, None], kinds[:, ::-1], kinds)
         elements = np.where(swap[:, None, None], elements[:, ::-1], elements)
-        numbers = np.where(kinds == 1, self._edge_numbers(elements), elements[:, :, 0])
+        numbers = elements[:, :, 0].copy()
+        edges = kinds == 1
+        numbers[edges] = self._edge_numbers(elements[edges])
 
         def chosen(a: int, b: int) -> npt.NDArray[np.bool_]:
             return (kinds[:, 0] == a) & (kinds[:, 1] == b)
@@ -91,10 +93,8 @@ class CollisionMesh:
         lists = [chosen(0, 0), chosen(1, 0), chosen(2, 0), chosen(1, 1)]
         return Collisions(*(numbers[each] for each in lists), *(distances[each] for each in lists))
 
-    def _edge_numbers(self, elements: Ids) -> Ids:
-        keys = elements[..., 0] * self._count + elements[..., 1]
-        places = np.minimum(np.searchsorted(self._sorted_keys, keys), max(len(self._sorted_keys) - 1, 0))
-        return self._order[places] if len(self._order) else np.zeros_like(keys)
+    def _edge_numbers(self, edges: Ids) -> Ids:
+        return self._order[np.searchsorted(self._sorted_keys, self._keys(edges))]
 
     def collision_free_step(self, start: Any, end: Any, min_distance: float = 0, keep: float = 0.2) -> float:
         """A part of the step, 0 to 1, after which nothing has crossed; see `Scene.collision_free_step`."""
