@@ -28,7 +28,7 @@ nb::object find_pairs(BroadPhaseCore& core, std::span<const Volume> volumes,
   const CallGuard::Alone alone(core.guard);
   std::vector<IndexPair> pairs;
   {
-    nb::gil_scoped_release release;
+    const WithoutGil without_gil;
     BroadPhase& search = core.broad_phase;
     const auto found = kinds && dirty ? search.find_object_pairs(volumes, span_of(*kinds), span_of(*dirty))
                        : kinds        ? search.find_object_pairs(volumes, span_of(*kinds))

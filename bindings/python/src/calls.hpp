@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <mutex>
 #include <optional>
@@ -26,6 +27,37 @@ struct Stop {
   std::stop_source source;
 };
 
+/// The GIL is released while it lives. A thread that wants the GIL back when the interpreter has ended would
+/// be terminated, so `end_calls` waits for all of them before.
+class WithoutGil {
+ public:
+  WithoutGil() {
+    if (is_ending_) throw Error("the interpreter is ending");
+    ++running_;
+    release_.emplace();
+  }
+  ~WithoutGil() {
+    release_.reset();
+    --running_;
+  }
+  WithoutGil(const WithoutGil&) = delete;
+
+  /// Stops all calls that can be stopped, and waits for all. Python calls it at its exit.
+  static void end_calls() {
+    is_ending_ = true;
+    ending_.request_stop();
+    nb::gil_scoped_release release;
+    while (running_ > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  static std::stop_token ending() { return ending_.get_token(); }
+
+ private:
+  std::optional<nb::gil_scoped_release> release_;
+  static inline std::atomic<int> running_ = 0;
+  static inline std::atomic<bool> is_ending_ = false;
+  static inline std::stop_source ending_;
+};
+
 /// Who may call an object: calls that change it run alone. It belongs to the process that made it, because a
 /// process made by fork has none of the threads of its parent.
 class CallGuard {
@@ -37,7 +69,7 @@ class CallGuard {
     explicit Alone(CallGuard& guard) : guard_(guard) {
       guard.check();
       if (!guard.mutex_.try_lock()) {
-        nb::gil_scoped_release release;
+        const WithoutGil without_gil;
         guard.mutex_.lock();
       }
       guard.caller_ = std::this_thread::get_id();
@@ -65,7 +97,7 @@ class CallGuard {
       if (is_own_call) return;
       guard.check();
       if (!guard.mutex_.try_lock_shared()) {
-        nb::gil_scoped_release release;
+        const WithoutGil without_gil;
         guard.mutex_.lock_shared();
       }
     }
@@ -95,22 +127,21 @@ class CallGuard {
   std::atomic<std::thread::id> caller_{};
 };
 
-/// While it lives on the main thread, Ctrl-C requests a stop of the call. Python's handler runs, too, so that
-/// `check` raises what it raises, usually KeyboardInterrupt.
+/// While it lives on the main thread, Ctrl-C requests a stop of the call. Python's handler runs, too.
 class StoppableCall {
  public:
-  explicit StoppableCall(Stop* stop) {
-    if (stop != nullptr) source_ = stop->source;
+  explicit StoppableCall(const Stop* stop)
+      : stop_(stop == nullptr ? std::stop_token() : stop->source.get_token(), Request{source_}),
+        ending_(WithoutGil::ending(), Request{source_}) {
     if (gettid() != getpid()) return;
-    interrupted_ = false;
     outer_ = std::exchange(current_, this);
     struct sigaction action {};
     action.sa_handler = [](int signal) {
-      interrupted_ = true;
-      if (current_ != nullptr) current_->source_.request_stop();
-      if (current_ != nullptr && current_->before_.sa_handler != SIG_IGN &&
-          current_->before_.sa_handler != SIG_DFL)
-        current_->before_.sa_handler(signal);
+      if (current_ == nullptr) return;
+      current_->interrupted_ = true;
+      current_->source_.request_stop();
+      const auto before = current_->before_.sa_handler;
+      if (before != SIG_IGN && before != SIG_DFL) before(signal);
     };
     is_main_ = sigaction(SIGINT, &action, &before_) == 0;
   }
@@ -122,29 +153,45 @@ class StoppableCall {
   StoppableCall(const StoppableCall&) = delete;
 
   std::stop_token token() const { return source_.get_token(); }
-  /// Call it with the GIL after the call.
-  void check() const {
-    if (is_main_ && interrupted_ && PyErr_CheckSignals() != 0) throw nb::python_error();
-  }
+  bool was_interrupted() const { return interrupted_; }
 
  private:
+  struct Request {
+    std::stop_source source;
+    void operator()() { source.request_stop(); }
+  };
   std::stop_source source_;
+  std::stop_callback<Request> stop_, ending_;
   struct sigaction before_ {};
   StoppableCall* outer_ = nullptr;
   bool is_main_ = false;
-  static inline std::atomic<bool> interrupted_ = false;
+  std::atomic<bool> interrupted_ = false;
   static inline StoppableCall* current_ = nullptr;  // of the main thread
 };
 
-/// Runs `call(token)` without the GIL. Ctrl-C and `stop` stop it.
+/// Runs `call(token)` without the GIL. Ctrl-C and `stop` stop it. When Python's handler of Ctrl-C raises
+/// nothing, the call is repeated, if it can be.
 template <class Call>
-auto run_stoppable(Stop* stop, const Call& call) {
-  const StoppableCall stoppable(stop);
-  auto result = [&] {
-    nb::gil_scoped_release release;
-    return call(stoppable.token());
-  }();
-  stoppable.check();
+auto run_stoppable(const Stop* stop, const Call& call, bool can_repeat = true) {
+  while (true) {
+    const StoppableCall stoppable(stop);
+    auto result = [&] {
+      const WithoutGil without_gil;
+      return call(stoppable.token());
+    }();
+    if (!stoppable.was_interrupted()) return result;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (!can_repeat || (stop != nullptr && stop->source.stop_requested())) return result;
+  }
+}
+
+/// The same for a call whose stopped answer would look like an answer: a stop is an error.
+template <class Call>
+auto run_or_fail(const Stop* stop, const char* name, const Call& call) {
+  auto result = run_stoppable(stop, call);
+  if (stop != nullptr && stop->source.stop_requested())
+    throw Error(std::string(name) +
+                ": it was stopped, so there is no answer; a Stop stays requested, make a new one");
   return result;
 }
 

@@ -96,7 +96,7 @@ void bind_elements(nb::module_& module) {
                    times[2 * i + 1] = bracket->high;
                  }
                };
-               nb::gil_scoped_release release;
+               const WithoutGil without_gil;
                for (std::size_t i = 0; i < start.shape(0); ++i) {
                  if (kind == "vertex_face")
                    decide(VertexFaceMotion{}, i);

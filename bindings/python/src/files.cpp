@@ -136,7 +136,7 @@ void bind_files(nb::module_& module) {
         return dict;
       });
   module.def("load_mesh", [](const std::string& path) {
-    nb::gil_scoped_release release;
+    const WithoutGil without_gil;
     return MeshData{load_mesh(path)};
   });
   module.def("save_mesh", [](const MeshData& mesh, const std::string& path) { save_mesh(mesh.mesh, path); });

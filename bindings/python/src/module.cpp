@@ -50,6 +50,7 @@ NB_MODULE(_core, module) {
           "MassSpringOptions, MassSpringMotion, RigidMotion and ContactResponse");
     return list;
   });
+  module.def("end_calls", &WithoutGil::end_calls);
   bind_results(module);
   bind_scene(module);
   bind_elements(module);

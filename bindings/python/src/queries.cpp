@@ -18,9 +18,10 @@ QueryFilter filter_with(const std::optional<ObjectId>& object, std::uint32_t mas
 
 /// Runs a query that fills one answer for each question.
 template <class Answer, class Query>
-std::vector<Answer> run_query(SceneCore& core, std::size_t count, Stop* stop, const Query& query) {
+std::vector<Answer> run_query(SceneCore& core, const char* name, std::size_t count, Stop* stop,
+                              const Query& query) {
   const Together together(core.guard());
-  return run_stoppable(stop, [&](std::stop_token token) {
+  return run_or_fail(stop, name, [&](std::stop_token token) {
     std::vector<Answer> answers(count);
     query(std::span(answers), CallLimits{std::move(token)});
     return answers;
@@ -29,9 +30,9 @@ std::vector<Answer> run_query(SceneCore& core, std::size_t count, Stop* stop, co
 
 /// Runs a query that returns its answer.
 template <class Query>
-auto run_query(SceneCore& core, Stop* stop, const Query& query) {
+auto run_query(SceneCore& core, const char* name, Stop* stop, const Query& query) {
   const Together together(core.guard());
-  return run_stoppable(stop, [&](std::stop_token token) { return query(CallLimits{std::move(token)}); });
+  return run_or_fail(stop, name, [&](std::stop_token token) { return query(CallLimits{std::move(token)}); });
 }
 
 /// The answers of a table with the member `found`.
@@ -61,7 +62,7 @@ template <class Check>
 nb::list verify_query(SceneCore& core, const Check& check) {
   const Together together(core.guard());
   return wrong_answers([&] {
-    nb::gil_scoped_release release;
+    const WithoutGil without_gil;
     return check(static_cast<const Scene&>(core.scene()));
   }());
 }
@@ -75,7 +76,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       [](SceneCore& core, const Points& points, std::optional<ObjectId> only, std::uint32_t mask,
          double max_distance, bool is_signed, Stop* stop) {
         return to_answers(run_query<std::optional<ClosestPoint>>(
-            core, points.shape(0), stop, [&](auto answers, const CallLimits& limits) {
+            core, "closest", points.shape(0), stop, [&](auto answers, const CallLimits& limits) {
               core.scene().closest(rows_of<Vec3d>(points), answers,
                                    {filter_with(only, mask), max_distance, is_signed, limits});
             }));
@@ -86,7 +87,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       [](SceneCore& core, const Rays& rays, std::optional<ObjectId> only, std::uint32_t mask, bool count_hits,
          Stop* stop) {
         return to_answers(run_query<std::optional<RayHit>>(
-            core, rays.shape(0), stop, [&](auto answers, const CallLimits& limits) {
+            core, "cast", rays.shape(0), stop, [&](auto answers, const CallLimits& limits) {
               core.scene().cast(rows_of<Ray>(rays), answers, {filter_with(only, mask), count_hits, limits});
             }));
       },
@@ -94,7 +95,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
   scene.def(
       "cast_all",
       [](SceneCore& core, const Rays& rays, std::optional<ObjectId> only, std::uint32_t mask, Stop* stop) {
-        return to_table(run_query(core, stop, [&](const CallLimits& limits) {
+        return to_table(run_query(core, "cast_all", stop, [&](const CallLimits& limits) {
           return core.scene().cast_all(rows_of<Ray>(rays), filter_with(only, mask), limits);
         }));
       },
@@ -102,7 +103,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
   scene.def(
       "overlaps_boxes",
       [](SceneCore& core, const Rays& boxes, std::optional<ObjectId> only, std::uint32_t mask, Stop* stop) {
-        return to_table(run_query(core, stop, [&](const CallLimits& limits) {
+        return to_table(run_query(core, "overlaps_boxes", stop, [&](const CallLimits& limits) {
           return core.scene().overlaps(rows_of<QueryBox>(boxes), filter_with(only, mask), limits);
         }));
       },
@@ -111,7 +112,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       "overlaps_spheres",
       [](SceneCore& core, const Spheres& spheres, std::optional<ObjectId> only, std::uint32_t mask,
          Stop* stop) {
-        return to_table(run_query(core, stop, [&](const CallLimits& limits) {
+        return to_table(run_query(core, "overlaps_spheres", stop, [&](const CallLimits& limits) {
           return core.scene().overlaps(rows_of<QuerySphere>(spheres), filter_with(only, mask), limits);
         }));
       },
@@ -120,8 +121,8 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       "inside",
       [](SceneCore& core, const Points& points, std::optional<ObjectId> only, std::uint32_t mask,
          Stop* stop) {
-        const auto answers =
-            run_query<Containment>(core, points.shape(0), stop, [&](auto results, const CallLimits& limits) {
+        const auto answers = run_query<Containment>(
+            core, "inside", points.shape(0), stop, [&](auto results, const CallLimits& limits) {
               core.scene().inside(rows_of<Vec3d>(points), results, filter_with(only, mask), limits);
             });
         std::vector<std::uint8_t> numbers(answers.size());
@@ -132,14 +133,15 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
   scene.def(
       "distance",
       [](SceneCore& core, ObjectId a, ObjectId b, Stop* stop) {
-        return to_table(run_query(
-            core, stop, [&](const CallLimits& limits) { return core.scene().distance(a, b, limits); }));
+        return to_table(run_query(core, "distance", stop, [&](const CallLimits& limits) {
+          return core.scene().distance(a, b, limits);
+        }));
       },
       nb::arg(), nb::arg(), object());
   scene.def(
       "distances",
       [](SceneCore& core, double max_distance, Stop* stop) {
-        return to_table(run_query(core, stop, [&](const CallLimits& limits) {
+        return to_table(run_query(core, "distances", stop, [&](const CallLimits& limits) {
           return core.scene().distances(max_distance, limits);
         }));
       },
@@ -147,7 +149,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
   scene.def(
       "any_contact",
       [](SceneCore& core, ObjectId a, ObjectId b, Stop* stop) {
-        return run_query(core, stop,
+        return run_query(core, "any_contact", stop,
                          [&](const CallLimits& limits) { return core.scene().any_contact(a, b, limits); });
       },
       nb::arg(), nb::arg(), object());

@@ -168,10 +168,18 @@ nb::object to_table(std::vector<Row>&& rows) {
   return to_table(std::span<const Row>(*list), owner);
 }
 
-/// A list of numbers or vectors that Python takes over, as an array.
+/// A list of numbers or vectors that Python takes over, as an array that it may change.
 template <class Row>
 nb::object to_plain_array(std::vector<Row>&& rows) {
-  return nb::borrow<nb::object>(nb::cast<nb::tuple>(to_table(std::move(rows)))[1]);
+  auto* const list = new std::vector<Row>(std::move(rows));
+  const nb::capsule owner(list, [](void* p) noexcept { delete static_cast<std::vector<Row>*>(p); });
+  static Row nothing{};
+  Row* const data = list->empty() ? &nothing : list->data();
+  if constexpr (std::is_same_v<Row, Vec3d>) {
+    return nb::cast(nb::ndarray<nb::numpy, double>(data, {list->size(), 3}, owner));
+  } else {
+    return nb::cast(nb::ndarray<nb::numpy, Row>(data, {list->size()}, owner));
+  }
 }
 
 /// The answers of a query as a table with the member `found`.

@@ -228,7 +228,7 @@ void bind_scene(nb::module_& module) {
         const Alone alone(core.guard());
         const PositionsView xyz = positions_of(positions);
         const TrianglesView faces = triangles_of(triangles);
-        nb::gil_scoped_release release;
+        const WithoutGil without_gil;
         return core.scene().add(xyz, faces, object);
       },
       nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg().none());
@@ -308,28 +308,28 @@ void bind_scene(nb::module_& module) {
   scene.def("earliest_impact", [](SceneCore& core) {
     const Alone alone(core.guard());
     return to_table([&] {
-      nb::gil_scoped_release release;
+      const WithoutGil without_gil;
       return core.scene().earliest_impact();
     }());
   });
   scene.def("max_step", [](SceneCore& core) {
     const Alone alone(core.guard());
     return safe_step([&] {
-      nb::gil_scoped_release release;
+      const WithoutGil without_gil;
       return core.scene().max_step();
     }());
   });
   scene.def("collision_free_step", [](SceneCore& core, double keep) {
     const Alone alone(core.guard());
     return safe_step([&] {
-      nb::gil_scoped_release release;
+      const WithoutGil without_gil;
       return core.scene().collision_free_step({keep});
     }());
   });
   scene.def("collision_free_steps", [](SceneCore& core, double keep) {
     const Alone alone(core.guard());
     const auto steps = [&] {
-      nb::gil_scoped_release release;
+      const WithoutGil without_gil;
       return core.scene().collision_free_steps({keep});
     }();
     nb::list list;
@@ -341,8 +341,8 @@ void bind_scene(nb::module_& module) {
       "verify",
       [](SceneCore& core, Stop* stop) {
         const Together together(core.guard());
-        return report_of(run_stoppable(
-            stop, [&](std::stop_token token) { return core.scene().verify({std::move(token)}); }));
+        return report_of(run_or_fail(
+            stop, "verify", [&](std::stop_token token) { return core.scene().verify({std::move(token)}); }));
       },
       nb::arg().none());
 

@@ -4,6 +4,8 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <string_view>
+
 #include "arrays.hpp"
 #include "meshes.hpp"
 #include "options.hpp"
@@ -70,11 +72,13 @@ std::unique_ptr<Result> SimulationCore::run(const nb::dict& keywords, const char
   DetectRequest request = request_of(keywords, simulation().options().scene, where);
   const Alone alone(guard());
   auto result = std::make_unique<Result>();
-  result->found = run_stoppable(stop, [&](std::stop_token token) {
+  const auto run = [&](std::stop_token token) {
     request.stop = std::move(token);
     state_->last.leave(simulation());
     return advance(simulation(), request);
-  });
+  };
+  // A step cannot be taken twice.
+  result->found = run_stoppable(stop, run, std::string_view(where) != "step");
   result->lists = state_->last.begin(state_);
   return result;
 }
@@ -268,7 +272,7 @@ void bind_simulation(nb::module_& module) {
         const std::span<Vec3d> v(reinterpret_cast<Vec3d*>(velocities.data()), velocities.shape(0));
         const std::span<const double> m = masses ? span_of(*masses) : std::span<const double>();
         const Alone alone(core.guard());
-        nb::gil_scoped_release release;
+        const WithoutGil without_gil;
         return respond(core.scene(), id, v, m, dt, options);
       },
       nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg());

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 from typing import NamedTuple
 
 from . import _core
@@ -47,6 +48,7 @@ from ._simulation import MassSpringBody, SimulatedObject, Simulation, respond
 from ._tables import Record, Table, dtypes
 from ._view import view
 
+atexit.register(_core.end_calls)
 for _error in (Error, MotionError):
     _error.__doc__ = CONTRACTS[_error.__name__]
 __version__: str = _core.version
@@ -65,7 +67,9 @@ class Option(NamedTuple):
 def options(structure: str = "SceneOptions") -> list[Option]:
     """The options of a structure: SceneOptions, ObjectOptions, ImpactOptions, StepOptions, SimulationOptions,
     MassSpringOptions, MassSpringMotion, RigidMotion or ContactResponse."""
-    return [Option(*each) for each in _core.options(structure)]
+    found = [Option(*each) for each in _core.options(structure)]
+    # The name of the first parameter of methods cannot be a keyword.
+    return [each._replace(name="self_collision") if each.name == "self" else each for each in found]
 
 
 __all__ = [

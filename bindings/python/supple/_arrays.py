@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import warnings
 from typing import Any
 
@@ -20,6 +21,10 @@ def as_numpy(value: Any, what: str) -> npt.NDArray[Any]:
     host, with a warning the first time.
     """
     global _warned_about_device
+    if isinstance(value, np.ma.MaskedArray):
+        raise Error(
+            f"{what} are a masked array; decide what masked rows mean: use .compressed() or .filled()"
+        )
     if isinstance(value, np.ndarray):
         return value
     if hasattr(value, "requires_grad") and hasattr(value, "detach"):
@@ -58,18 +63,24 @@ def positions(value: Any, what: str = "positions") -> npt.NDArray[Any]:
     """An (n, 3) array of float32 or float64. Whole numbers become float64 and float16 becomes float32."""
     if type(value) is np.ndarray and value.dtype.char in "fd" and value.ndim == 2 and value.shape[1] == 3:
         size = value.itemsize
-        if value.flags.aligned and value.dtype.isnative and not any(stride % size for stride in value.strides):
+        if (
+            value.flags.aligned
+            and value.dtype.isnative
+            and not any(stride % size for stride in value.strides)
+        ):
             return value  # the usual case, in a microsecond
     array = as_numpy(value, what)
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))
     if array.dtype not in (np.float32, np.float64):
         if array.dtype.kind in "iu" or array.size == 0:
+            if array.size and max(int(array.max()), -int(array.min())) > 2**53:
+                raise Error(f"{what} are {array.dtype} with numbers beyond 2^53, which float64 cannot hold")
             array = array.astype(np.float64)
         elif array.dtype == np.float16:
             array = array.astype(np.float32)
         else:
-            raise Error(f"{what} are {array.dtype}; they must be float32 or float64")
+            raise Error(f"{what} are {array.dtype}; they must be float32, float64, float16 or whole numbers")
     if array.ndim == 2 and array.shape[1] == 3:
         return _plain(array)
     if array.size == 0:
@@ -133,3 +144,33 @@ def doubles(value: Any, what: str, *shape: int) -> npt.NDArray[np.float64]:
             f"{what} have the shape {array.shape}; it must be ({wanted}{',' if len(shape) == 1 else ''})"
         )
     return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def count(value: Any, what: str, least: int = 0, most: int = 0xFFFFFFFF) -> int:
+    """A whole number in a range."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise Error(f"{what} is {value!r}; it must be a whole number from {least} to {most}") from None
+    if not least <= number <= most:
+        raise Error(f"{what} is {number}; it must be a whole number from {least} to {most}")
+    return number
+
+
+def number(value: Any, what: str) -> float:
+    """A number."""
+    if isinstance(value, (bool, str)) or not hasattr(value, "__float__"):
+        raise Error(f"{what} is {value!r}; it must be a number")
+    return float(value)
+
+
+def truth(value: Any, what: str) -> bool:
+    """True or False, also of NumPy."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise Error(f"{what} is {value!r}; it must be True or False")
+    return bool(value)
+
+
+def keywords(options: dict[str, Any]) -> dict[str, Any]:
+    """Options with the truth values of Python."""
+    return {key: bool(value) if isinstance(value, np.bool_) else value for key, value in options.items()}

@@ -33,7 +33,9 @@ class Experiment:
         return {name: pandas.DataFrame(columns) for name, columns in self.tables.items()}
 
     def __repr__(self) -> str:
-        sizes = ", ".join(f"{name} ({len(next(iter(table.values()), ()))} rows)" for name, table in self.tables.items())
+        sizes = ", ".join(
+            f"{name} ({len(next(iter(table.values()), ()))} rows)" for name, table in self.tables.items()
+        )
         return f"<supple.Experiment {str(self.folder)!r}: {sizes}>"
 
 
@@ -42,7 +44,9 @@ def _read(path: pathlib.Path) -> dict[str, npt.NDArray[Any]]:
         rows = [row for row in csv.reader(file) if row and not row[0].startswith("#")]
     if not rows:
         return {}
-    return {name: _column([row[i] if i < len(row) else "" for row in rows[1:]]) for i, name in enumerate(rows[0])}
+    return {
+        name: _column([row[i] if i < len(row) else "" for row in rows[1:]]) for i, name in enumerate(rows[0])
+    }
 
 
 def _column(texts: list[str]) -> npt.NDArray[Any]:

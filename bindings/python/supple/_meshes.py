@@ -106,27 +106,37 @@ def model_names() -> list[str]:
 
 @contract("make_model")
 def make_model(name: str) -> Mesh:
-    return Mesh._of(_core.make_model(name))
+    return Mesh._of(_core.make_model(str(name)))
 
 
 @contract("make_icosphere")
 def make_icosphere(frequency: int) -> Mesh:
-    return Mesh._of(_core.make_icosphere(frequency))
+    return Mesh._of(_core.make_icosphere(_arrays.count(frequency, "frequency", 1)))
 
 
 @contract("make_torus")
 def make_torus(rings: int, sides: int, major_radius: float = 0.5, minor_radius: float = 0.2) -> Mesh:
-    return Mesh._of(_core.make_torus(rings, sides, major_radius, minor_radius))
+    return Mesh._of(
+        _core.make_torus(
+            _arrays.count(rings, "rings", 3), _arrays.count(sides, "sides", 3), major_radius, minor_radius
+        )
+    )
 
 
 @contract("make_box")
 def make_box(size: tuple[float, float, float] = (1, 1, 1), resolution: int = 1) -> Mesh:
-    return Mesh._of(_core.make_box(*map(float, size), resolution))
+    return Mesh._of(
+        _core.make_box(
+            *_arrays.doubles(size, "the size", 3).tolist(), _arrays.count(resolution, "resolution", 1)
+        )
+    )
 
 
 @contract("make_cloth")
 def make_cloth(columns: int, rows: int, width: float = 1, depth: float = 1) -> Mesh:
-    return Mesh._of(_core.make_cloth(columns, rows, width, depth))
+    return Mesh._of(
+        _core.make_cloth(_arrays.count(columns, "columns", 1), _arrays.count(rows, "rows", 1), width, depth)
+    )
 
 
 @contract("compute_topology", "Returns the counts by name, with `closed` and, in words, `surface`.")
@@ -173,6 +183,8 @@ def split_into_parts(mesh: Any, weld: bool = False) -> list[MeshPart]:
 def arrays_of(mesh: Any, faces: Any = None) -> tuple[Any, Any, str, Any, Any]:
     """Positions, triangles, name, edges and points of a mesh of any library, or of two arrays."""
     if faces is not None:
+        if isinstance(mesh, (str, os.PathLike, Mesh)):
+            raise Error("give either a mesh, or positions and triangles")
         return mesh, faces, "", (), ()
     if isinstance(mesh, (str, os.PathLike)):
         mesh = _load(os.fspath(mesh))
@@ -204,7 +216,7 @@ def arrays_of(mesh: Any, faces: Any = None) -> tuple[Any, Any, str, Any, Any]:
         surface = mesh if mesh.is_all_triangles else mesh.triangulate()
         return np.asarray(surface.points), np.asarray(surface.regular_faces), "", (), ()
     raise Error(
-        f"a {type(mesh).__name__} is not a mesh; give positions and triangles, the path of a file, or a mesh of "
+        f"{type(mesh).__name__} is not a mesh; give positions and triangles, the path of a file, or a mesh of "
         "supple, trimesh, meshio, PyVista or Open3D"
     )
 

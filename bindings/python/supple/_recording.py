@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._contracts import contract
+from ._generated import ElementPairKind, FeatureKind
 from ._meshes import Mesh
 from ._result import _Lists
 from ._scene import Scene
@@ -25,7 +26,7 @@ class Frame(_Lists):
         self.time: float = facts["time"]
         self.stats: dict[str, Any] = dict(facts["stats"])
         self._recording = recording
-        self._tables = {name: table(raw) for name, raw in facts["tables"].items()}
+        self._tables = {name: table(raw, recording._elements) for name, raw in facts["tables"].items()}
 
     @property
     def positions(self) -> list[npt.NDArray[np.float64]]:
@@ -54,6 +55,33 @@ class RecordedObject:
         return f"<supple.RecordedObject {self.index} {self.name!r}: {len(self.mesh.positions)} vertices>"
 
 
+#: The kinds of both elements by the kind of their pair, as the names of the kinds say.
+_PAIR_KINDS = np.array([[FeatureKind[part] for part in kind.name.split("_")] for kind in ElementPairKind])
+
+
+class _Elements:
+    """The vertices of the elements of a recording, as a scene knows those of its objects."""
+
+    def __init__(self, objects: list[RecordedObject]) -> None:
+        self._triangles = {each.index: np.asarray(each.mesh.triangles) for each in objects}
+
+    def vertices_of(self, record: str, rows: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
+        made = table((record, rows))
+        if record == "Contact":
+            kinds = np.full((len(made), 2), FeatureKind.face)
+            elements = np.repeat(made["triangle"][:, :, None], 2, axis=2)
+        else:
+            kinds = made["kind"] if record == "ProximityPair" else _PAIR_KINDS[made["kind"]]
+            elements = made["element"]
+        vertices = np.repeat(elements[:, :, :1], 3, axis=2)
+        edges = kinds == FeatureKind.edge
+        vertices[edges, 1] = elements[edges, 1]
+        for index, triangles in self._triangles.items():
+            faces = (kinds == FeatureKind.face) & (made["object"] == index)
+            vertices[faces] = triangles[elements[faces, 0]]
+        return vertices
+
+
 class Recording:
     """A recording as a sequence of frames: `recording[3].contacts`, `for frame in recording`."""
 
@@ -61,6 +89,7 @@ class Recording:
         self.path = os.fspath(path)
         self._core = _core.Recording(self.path)
         self.objects = [RecordedObject(*each) for each in self._core.objects()]
+        self._elements = _Elements(self.objects)
 
     @property
     def time_step(self) -> float:

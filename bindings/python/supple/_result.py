@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Collection, Iterator, NamedTuple
 
 from . import _core
+from ._core import Error
 from ._tables import Table, dtypes, table
 
 #: Short names of lists.
@@ -61,6 +62,26 @@ class _Lists:
         """The number of contacts of all kinds."""
         counts = self._counts()
         return sum(counts.get(name, 0) for name in ANSWERS)
+
+    def __iter__(self) -> Iterator[PairContacts]:
+        parts: dict[tuple[int, int], dict[str, Table]] = {}
+        if "groups" not in self._names():
+            raise Error(
+                "only a result of detect has the pairs of objects; its lists have the columns object_a and object_b"
+            )
+        for groups, name in (
+            ("groups", "contacts"),
+            ("continuous_groups", "continuous_contacts"),
+            ("proximity_groups", "proximity_pairs"),
+        ):
+            for group in self._list(groups):
+                rows = self._list(name)[group.first_contact : group.first_contact + group.contact_count]
+                parts.setdefault((int(group.a), int(group.b)), {})[name] = rows
+        nothing = {
+            name: self._list(name)[:0] for name in ("contacts", "continuous_contacts", "proximity_pairs")
+        }
+        for (a, b), found in sorted(parts.items()):
+            yield PairContacts(a, b, **{**nothing, **found})
 
     def to_pandas(self) -> dict[str, Any]:
         """A pandas.DataFrame for each list of records that is not empty."""
@@ -131,22 +152,6 @@ class Result(_Lists):
         """The kinds of contacts for which there was nothing to test, with the reason."""
         return dict(self._core.untested())
 
-    def __iter__(self) -> Iterator[PairContacts]:
-        parts: dict[tuple[int, int], dict[str, Table]] = {}
-        for groups, name in (
-            ("groups", "contacts"),
-            ("continuous_groups", "continuous_contacts"),
-            ("proximity_groups", "proximity_pairs"),
-        ):
-            for group in self._list(groups):
-                rows = self._list(name)[group.first_contact : group.first_contact + group.contact_count]
-                parts.setdefault((int(group.a), int(group.b)), {})[name] = rows
-        nothing = {
-            name: self._list(name)[:0] for name in ("contacts", "continuous_contacts", "proximity_pairs")
-        }
-        for (a, b), found in sorted(parts.items()):
-            yield PairContacts(a, b, **{**nothing, **found})
-
     def __repr__(self) -> str:
         untested = "".join(f"; {kind}: nothing to test ({reason})" for kind, reason in self.untested.items())
         state = " (stopped)" if self.stopped else " (truncated)" if self.truncated else ""
@@ -195,7 +200,8 @@ class SavedResult(_Lists):
         return SavedResult, (self._saved, self._facts)
 
     def __repr__(self) -> str:
-        return f"<supple.SavedResult: {self._summary()}>"
+        state = " (stopped)" if self._facts.get("stopped") else ""
+        return f"<supple.SavedResult{state}: {self._summary()}>"
 
 
 __all__ = ["PairContacts", "Result", "SavedResult", "Table", "dtypes"]

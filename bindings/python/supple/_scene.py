@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import weakref
 from typing import Any, Callable, Iterable, Iterator, Mapping, NamedTuple
 
@@ -130,8 +131,14 @@ removed. It must be an array whose memory the scene can read: an array that had 
     )
     def share_positions(self, positions: Any) -> None:
         array = _arrays.positions(positions)
-        if array is not positions and not np.may_share_memory(array, _arrays.as_numpy(positions, "positions")) and array.size:
-            raise Error("these positions cannot be shared, because they are converted; give an array of float32 or float64")
+        if (
+            array is not positions
+            and not np.may_share_memory(array, _arrays.as_numpy(positions, "positions"))
+            and array.size
+        ):
+            raise Error(
+                "these positions cannot be shared, because they are converted; give an array of float32 or float64"
+            )
         self._scene._core.share_positions(self._id, array, array)
 
     @contract("Scene::set_motion")
@@ -163,23 +170,23 @@ columns, the translation in the last one. `supple.rigid_transform` makes that of
 
     @contract("Scene::set_static")
     def set_static(self, static: bool) -> None:
-        self._scene._core.set_static(self._id, bool(static))
+        self._scene._core.set_static(self._id, _arrays.truth(static, "static"))
 
     @contract("Scene::set_group")
     def set_group(self, group: int, mask: int = 0xFFFFFFFF) -> None:
-        self._scene._core.set_group(self._id, group, mask)
+        self._scene._core.set_group(self._id, _arrays.count(group, "group"), _arrays.count(mask, "mask"))
 
     @contract("Scene::set_margin")
     def set_margin(self, margin: float) -> None:
-        self._scene._core.set_margin(self._id, margin)
+        self._scene._core.set_margin(self._id, _arrays.number(margin, "margin"))
 
     @contract("Scene::set_min_separation")
     def set_min_separation(self, separation: float) -> None:
-        self._scene._core.set_min_separation(self._id, separation)
+        self._scene._core.set_min_separation(self._id, _arrays.number(separation, "separation"))
 
     @contract("Scene::set_self_collision")
     def set_self_collision(self, enabled: bool) -> None:
-        self._scene._core.set_self_collision(self._id, bool(enabled))
+        self._scene._core.set_self_collision(self._id, _arrays.truth(enabled, "enabled"))
 
     @contract("Scene::remove")
     def remove(self) -> None:
@@ -209,7 +216,9 @@ columns, the translation in the last one. `supple.rigid_transform` makes that of
     "RigidTransform::from_quaternion",
     "Returns a (4, 4) matrix for `Object.set_transform`.",
 )
-def rigid_transform(x: float, y: float, z: float, w: float, translation: Any = (0, 0, 0)) -> npt.NDArray[np.float64]:
+def rigid_transform(
+    x: float, y: float, z: float, w: float, translation: Any = (0, 0, 0)
+) -> npt.NDArray[np.float64]:
     matrix = np.eye(4)
     matrix[:3, :3] = _core.rotation_of_quaternion(x, y, z, w).reshape(3, 3)
     matrix[:3, 3] = _arrays.doubles(translation, "the translation", 3)
@@ -236,8 +245,10 @@ class Scene:
     All calls run without the GIL, so two scenes in two threads use two cores. Ctrl-C stops a call.
     """
 
+    __slots__ = ("_core", "_objects", "_result", "_no_result", "__weakref__")
+
     def __init__(self, **options: Any) -> None:
-        self._core = _core.Scene(options)
+        self._core = _core.Scene(_arrays.keywords(options))
         self._objects: dict[int, Object] = {}
         self._result = self._no_result = Result(_core.Result(), self._core)
 
@@ -260,8 +271,11 @@ class Scene:
         that are not aligned, not in the byte order of the machine, or not of float32, float64, int32, int64, uint16
         or uint32.
         """
+        if triangles is None and isinstance(mesh, np.ndarray) and (edges is not None or points is not None):
+            triangles = ()  # rods and particles alone
         xyz, faces, name, own_edges, own_points = arrays_of(mesh, triangles)
         options.setdefault("name", name)
+        options = _arrays.keywords(options)
         identifier = self._core.add(
             _arrays.positions(xyz),
             _arrays.triangles(faces),
@@ -274,15 +288,28 @@ class Scene:
         self._objects[added.index] = added
         return added
 
-    @contract("Scene::remove")
-    def remove(self, removed: Object) -> None:
-        self._core.remove(self._id(removed))
-        del self._objects[removed.index]
+    @contract("Scene::remove", "Takes an `Object`, its index or its name.")
+    def remove(self, removed: Any) -> None:
+        identifier = self._id(removed)
+        self._core.remove(identifier)
+        del self._objects[int(identifier.index)]
 
     def set_positions(self, positions: Mapping[Any, Any]) -> None:
-        """Sets the positions of several objects: `scene.set_positions({cloth: x, ball: y})`."""
+        """Sets the positions of several objects, all or none: `scene.set_positions({cloth: x, ball: y})`."""
+        if not isinstance(positions, Mapping):
+            raise Error("set_positions: give a dict of positions by object")
+        found: dict[int, tuple[Object, Any]] = {}
         for each, value in positions.items():
-            self._core.set_positions(self._id(each), _arrays.positions(value))
+            moved, array = self._one(each), _arrays.positions(value)
+            if moved.index in found:
+                raise Error(f"set_positions: object {moved.index} ({moved.name}) occurs twice")
+            if len(array) != moved.vertex_count:
+                raise Error(
+                    f"set_positions: {len(array)} positions for {moved.name}, which has {moved.vertex_count} vertices"
+                )
+            found[moved.index] = moved, array
+        for moved, array in found.values():
+            self._core.set_positions(moved._id, array)
 
     @contract(
         "Scene::set_pair_filter",
@@ -329,14 +356,14 @@ run without it. It must not call the scene. What it raises ends the call of the 
 
     @contract("Scene::collision_free_step")
     def collision_free_step(self, keep: float = 0.2) -> SafeStep:
-        step, limit = self._core.collision_free_step(keep)
+        step, limit = self._core.collision_free_step(_arrays.number(keep, "keep"))
         return SafeStep(step, record(limit, self._core))
 
     @contract("Scene::collision_free_steps")
     def collision_free_steps(self, keep: float = 0.2) -> list[ObjectStep]:
         return [
             ObjectStep(self._object(each), self._object(island), step, record(limit, self._core))
-            for each, island, step, limit in self._core.collision_free_steps(keep)
+            for each, island, step, limit in self._core.collision_free_steps(_arrays.number(keep, "keep"))
         ]
 
     # Queries.
@@ -359,7 +386,7 @@ run without it. It must not call the scene. What it raises ends the call of the 
             self._core.closest(
                 _arrays.doubles(points, "points", -1, 3),
                 self._filter(object),
-                mask,
+                _arrays.count(mask, "mask"),
                 max_distance,
                 signed,
                 stop,
@@ -385,7 +412,7 @@ run without it. It must not call the scene. What it raises ends the call of the 
             self._core.cast(
                 _rows(origins, directions, "origins", "directions"),
                 self._filter(object),
-                mask,
+                _arrays.count(mask, "mask"),
                 count_hits,
                 stop,
             )
@@ -403,7 +430,10 @@ run without it. It must not call the scene. What it raises ends the call of the 
     ) -> Table:
         return self._query(
             self._core.cast_all(
-                _rows(origins, directions, "origins", "directions"), self._filter(object), mask, stop
+                _rows(origins, directions, "origins", "directions"),
+                self._filter(object),
+                _arrays.count(mask, "mask"),
+                stop,
             )
         )
 
@@ -419,7 +449,10 @@ run without it. It must not call the scene. What it raises ends the call of the 
     ) -> Table:
         return self._query(
             self._core.overlaps_boxes(
-                _rows(lowest, highest, "lowest", "highest"), self._filter(object), mask, stop
+                _rows(lowest, highest, "lowest", "highest"),
+                self._filter(object),
+                _arrays.count(mask, "mask"),
+                stop,
             )
         )
 
@@ -434,7 +467,9 @@ run without it. It must not call the scene. What it raises ends the call of the 
         stop: Stop | None = None,
     ) -> Table:
         return self._query(
-            self._core.overlaps_spheres(_spheres(centers, radii), self._filter(object), mask, stop)
+            self._core.overlaps_spheres(
+                _spheres(centers, radii), self._filter(object), _arrays.count(mask, "mask"), stop
+            )
         )
 
     @contract(
@@ -446,7 +481,12 @@ run without it. It must not call the scene. What it raises ends the call of the 
         self, points: Any, *, object: Any = None, mask: int = 0xFFFFFFFF, stop: Stop | None = None
     ) -> npt.NDArray[np.uint8]:
         return self._query(
-            self._core.inside(_arrays.doubles(points, "points", -1, 3), self._filter(object), mask, stop)
+            self._core.inside(
+                _arrays.doubles(points, "points", -1, 3),
+                self._filter(object),
+                _arrays.count(mask, "mask"),
+                stop,
+            )
         )
 
     @contract("Scene::distance")
@@ -479,7 +519,7 @@ run without it. It must not call the scene. What it raises ends the call of the 
                 _arrays.doubles(points, "points", -1, 3),
                 _bytes(answers),
                 self._filter(object),
-                mask,
+                _arrays.count(mask, "mask"),
                 max_distance,
                 signed,
             )
@@ -501,7 +541,7 @@ run without it. It must not call the scene. What it raises ends the call of the 
                 _rows(origins, directions, "origins", "directions"),
                 _bytes(answers),
                 self._filter(object),
-                mask,
+                _arrays.count(mask, "mask"),
                 count_hits,
             )
         )
@@ -512,7 +552,10 @@ run without it. It must not call the scene. What it raises ends the call of the 
     ) -> list[WrongAnswer]:
         return _wrong(
             self._core.verify_cast_all(
-                _rows(origins, directions, "origins", "directions"), _bytes(hits), self._filter(object), mask
+                _rows(origins, directions, "origins", "directions"),
+                _bytes(hits),
+                self._filter(object),
+                _arrays.count(mask, "mask"),
             )
         )
 
@@ -522,7 +565,10 @@ run without it. It must not call the scene. What it raises ends the call of the 
     ) -> list[WrongAnswer]:
         return _wrong(
             self._core.verify_overlaps_boxes(
-                _rows(lowest, highest, "lowest", "highest"), _bytes(found), self._filter(object), mask
+                _rows(lowest, highest, "lowest", "highest"),
+                _bytes(found),
+                self._filter(object),
+                _arrays.count(mask, "mask"),
             )
         )
 
@@ -532,7 +578,7 @@ run without it. It must not call the scene. What it raises ends the call of the 
     ) -> list[WrongAnswer]:
         return _wrong(
             self._core.verify_overlaps_spheres(
-                _spheres(centers, radii), _bytes(found), self._filter(object), mask
+                _spheres(centers, radii), _bytes(found), self._filter(object), _arrays.count(mask, "mask")
             )
         )
 
@@ -543,9 +589,9 @@ run without it. It must not call the scene. What it raises ends the call of the 
         return _wrong(
             self._core.verify_inside(
                 _arrays.doubles(points, "points", -1, 3),
-                np.ascontiguousarray(answers, np.uint8),
+                _containments(answers),
                 self._filter(object),
-                mask,
+                _arrays.count(mask, "mask"),
             )
         )
 
@@ -575,18 +621,19 @@ run without it. It must not call the scene. What it raises ends the call of the 
         return dict(self._core.options())
 
     def __getitem__(self, key: int | str) -> Object:
-        """The object with this index or name."""
-        if not isinstance(key, str):
-            found = self._objects.get(int(key))
-            if found is not None:
-                return found
-            raise KeyError(f"the scene has no object {key}; it has {sorted(self._objects)}")
-        named = [each for each in self.objects if each.name == key]
-        if not named:
-            raise KeyError(
-                f"no object of the scene is called '{key}'; there are {[each.name for each in self.objects]}"
-            )
-        return named[0]
+        """The object with this index or name; of several with one name the first."""
+        if isinstance(key, str):
+            named = [each for each in self.objects if each.name == key]
+            if named:
+                return named[0]
+            names = [each.name for each in self.objects]
+            raise KeyError(f"no object of the scene is called {key!r}; there are {names}")
+        if isinstance(key, (bool, np.bool_)) or not hasattr(key, "__index__"):
+            raise KeyError(f"{key!r} is no object of the scene; give an Object, its index or its name")
+        found = self._objects.get(operator.index(key))
+        if found is None:
+            raise KeyError(f"the scene has no object {operator.index(key)}; it has {sorted(self._objects)}")
+        return found
 
     def __len__(self) -> int:
         return len(self._objects)
@@ -595,7 +642,12 @@ run without it. It must not call the scene. What it raises ends the call of the 
         return iter(self.objects)
 
     def __contains__(self, each: object) -> bool:
-        return isinstance(each, Object) and each._scene is self and bool(self._core.contains(each._id))
+        if isinstance(each, Object):
+            return each._scene is self and bool(self._core.contains(each._id))
+        try:
+            return bool(self[each])  # type: ignore[index]
+        except KeyError:
+            return False
 
     def __repr__(self) -> str:
         triangles = sum(each.triangle_count for each in self)
@@ -611,12 +663,15 @@ run without it. It must not call the scene. What it raises ends the call of the 
             f"<table><tr><th>object</th><th>name</th><th>vertices</th><th>triangles</th></tr>{rows}</table>"
         )
 
+    def _one(self, each: Any) -> Object:
+        if not isinstance(each, Object):
+            return self[each]
+        if each._scene is not self:
+            raise Error(f"object {each.index} is of another scene")
+        return each
+
     def _id(self, each: Any) -> Any:
-        if isinstance(each, Object):
-            if each._scene is not self:
-                raise Error(f"object {each.index} is of another scene")
-            return each._id
-        return self[each]._id
+        return self._one(each)._id
 
     def _filter(self, each: Any) -> Any:
         return None if each is None else self._id(each)
@@ -632,7 +687,8 @@ run without it. It must not call the scene. What it raises ends the call of the 
 
         def decide(a: Any, b: Any) -> bool:
             scene = this()
-            return scene is None or accepts(scene._object(a), scene._object(b))
+            answer = True if scene is None else accepts(scene._object(a), scene._object(b))
+            return bool(answer) if isinstance(answer, np.bool_) else answer
 
         return decide
 
@@ -663,6 +719,17 @@ def _bytes(answers: Any) -> npt.NDArray[np.uint8]:
     if not isinstance(answers, Table):
         raise Error("the answers must be the table that the query returned")
     return np.ascontiguousarray(np.ndarray.view(answers, np.ndarray)).view(np.uint8).reshape(-1)
+
+
+def _containments(answers: Any) -> npt.NDArray[np.uint8]:
+    array = _arrays.as_numpy(answers, "answers")
+    if (
+        array.dtype.kind not in "iu"
+        or array.ndim != 1
+        or (array.size and not 0 <= array.min() <= array.max() <= 2)
+    ):
+        raise Error("the answers must be the numbers of supple.Containment, 0 to 2")
+    return np.ascontiguousarray(array, np.uint8)
 
 
 def _wrong(answers: Iterable[tuple[int, str, str]]) -> list[WrongAnswer]:

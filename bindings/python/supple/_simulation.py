@@ -69,10 +69,12 @@ class Simulation:
             ...
     """
 
+    __slots__ = ("_core", "_objects", "_result", "_no_result", "__weakref__")
+
     def __init__(self, **options: Any) -> None:
         if options.get("border") is not None:
             options["border"] = _arrays.doubles(options["border"], "the border", 2, 3)
-        self._core = _core.Simulation(options)
+        self._core = _core.Simulation(_arrays.keywords(options))
         self._objects: dict[int, SimulatedObject] = {}
         self._result = self._no_result = Result(_core.Result(), self._core)
 
@@ -100,7 +102,11 @@ class Simulation:
             raise Error("add: an object has one motion: springs, rigid or motion")
         if springs is None and (fixed_vertices is not None or len(handles)):
             raise Error("add: fixed_vertices and handles need springs")
+        for given, chosen in (("springs", springs), ("rigid", rigid)):
+            if chosen is not None and not isinstance(chosen, Mapping):
+                raise Error(f"add: {given} is {chosen!r}; it must be a dict of options")
         made = as_mesh(mesh, triangles)
+        options = _arrays.keywords(options)
         options.setdefault("name", made.name)
         kind, value = next(
             (
@@ -144,7 +150,7 @@ class Simulation:
 
     def run(self, steps: int, *, progress: bool = False, **request: Any) -> Iterator[Result]:
         """Takes `steps` steps and gives the result of each. `progress` shows a bar, which needs tqdm."""
-        numbers: Any = range(steps)
+        numbers: Any = range(_arrays.count(steps, "steps"))
         if progress:
             from tqdm.auto import tqdm
 

@@ -35,6 +35,8 @@ _fields = {
     name: {member[0]: (member[5], member[6]) for member in members}
     for name, (_, members) in _core.layouts().items()
 }
+#: Records with an element of each side, whose vertices a scene knows.
+_WITH_VERTICES = ("Contact", "ContinuousContact", "ProximityPair", "LimitingPair")
 _SIDES = ("barycentric", "element", "object", "point", "triangle", "kind", "feature_kind")
 
 
@@ -107,7 +109,7 @@ class Table(np.ndarray):
         """The names of all columns, those that are made last."""
         names = list(self.dtype.names or ())
         names += [name for name in _SIDES if f"{name}_a" in names and f"{name}_b" in names]
-        return names + (["vertices"] if "element_a" in names or "triangle_a" in names else [])
+        return names + (["vertices"] if self.record in _WITH_VERTICES else [])
 
     def __getitem__(self, key: Any) -> Any:
         if not isinstance(key, str):
@@ -118,7 +120,9 @@ class Table(np.ndarray):
             if isinstance(chosen, Table) and self._vertices is not None and chosen.record:
                 chosen._vertices = self._vertices[key]
             return chosen
-        if key == "vertices":
+        if self.ndim != 1 and key not in (self.dtype.names or ()):
+            raise Error(f"the column '{key}' needs a table of one dimension; this one has {self.ndim}")
+        if key == "vertices" and self.record in _WITH_VERTICES:
             return self._vertices_of_elements()
         names = self.dtype.names or ()
         if key in names:

@@ -36,5 +36,8 @@ def test_notebooks(name):
     specification.loader.exec_module(module)
     notebook = module.run(module.NOTEBOOKS / f"{name}.ipynb")
     assert module.last_picture(notebook).startswith(b"\x89PNG")
-    assert all(not cell.outputs for cell in module.nbformat.read(module.NOTEBOOKS / f"{name}.ipynb", 4).cells
-               if cell.cell_type == "code"), "the notebook is kept without outputs"
+    assert all(
+        not cell.outputs
+        for cell in module.nbformat.read(module.NOTEBOOKS / f"{name}.ipynb", 4).cells
+        if cell.cell_type == "code"
+    ), "the notebook is kept without outputs"

@@ -92,7 +92,7 @@ def test_meshes_by_their_members():
     box = supple.make_box()
     assert supple.Scene().add(Tensor(box)).triangle_count == 12
     assert supple.Scene().add((box.positions, box.triangles)).triangle_count == 12
-    with pytest.raises(supple.Error, match="a object is not a mesh|an object is not a mesh"):
+    with pytest.raises(supple.Error, match="object is not a mesh"):
         supple.Scene().add(object())
 
 

@@ -543,3 +543,136 @@ def test_the_broad_phase_alone(rng):
     kinds = np.arange(300) % 2
     found = supple.BroadPhase(kind_pairs=[(0, 1)]).find(boxes, kinds=kinds)
     assert {tuple(pair) for pair in found.tolist()} == {(i, j) for i, j in wanted if kinds[i] != kinds[j]}
+
+
+def test_a_handler_of_ctrl_c_that_raises_nothing_does_not_change_answers():
+    scene = supple.Scene(threads=1)
+    mesh = supple.make_icosphere(20)
+    scene.add(mesh)
+    points = np.random.default_rng(0).uniform(-1, 1, (200_000, 3))
+    wanted = scene.inside(points)
+    before = signal.signal(signal.SIGINT, lambda *_: seen.append(1))
+    seen = []
+    try:
+        for _ in range(5):
+            timer = threading.Timer(0.01, lambda: os.kill(os.getpid(), signal.SIGINT))
+            timer.start()
+            np.testing.assert_array_equal(scene.inside(points), wanted)
+            timer.join()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert seen
+
+
+def test_a_stopped_query_has_no_answer(sphere):
+    scene, a, b = two_spheres(sphere)
+    scene.detect()
+    stop = supple.Stop()
+    stop.request()
+    assert stop.requested
+    for query in (
+        lambda: scene.any_contact(a, b, stop=stop),
+        lambda: scene.distance(a, b, stop=stop),
+        lambda: scene.inside([[0, 0, 0]], stop=stop),
+        lambda: scene.closest([[0, 0, 0]], stop=stop),
+        lambda: scene.verify(stop=stop),
+    ):
+        with pytest.raises(supple.Error, match="stopped, so there is no answer"):
+            query()
+    assert "(stopped)" in repr(scene.search(contacts="intersection", stop=stop))
+
+
+def test_the_interpreter_ends_while_a_call_runs(tmp_path):
+    import subprocess
+    import sys
+
+    for call in ("scene.detect(); a.positions = x", "supple.Scene().add(mesh)", "scene.closest(x)"):
+        program = f"""
+import threading, time, supple
+mesh = supple.make_icosphere(40)
+x = mesh.positions
+scene = supple.Scene()
+a, b = scene.add(mesh), scene.add(x + [0.1, 0, 0], mesh.triangles)
+def work():
+    while True:
+        {call}
+threading.Thread(target=work, daemon=True).start()
+time.sleep(0.2)
+"""
+        done = subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False
+        )
+        assert done.returncode == 0 and "terminate" not in done.stderr, done.stderr
+
+
+def test_objects_by_number_and_name(sphere):
+    scene, a, b = two_spheres(sphere)
+    for key in (1.7, True, None, b"a", float("nan"), 5, "c"):
+        assert key not in scene
+        with pytest.raises(KeyError):
+            scene[key]
+        if key is not None:
+            with pytest.raises(KeyError):
+                scene.closest([[0, 0, 0]], object=key)
+    assert "a" in scene and 1 in scene and np.int64(1) in scene
+    scene.remove("a")
+    assert len(scene) == 1 and scene.objects == [b]
+    scene.remove(np.int64(1))
+    assert len(scene) == 0 and "0 objects" in repr(scene)
+    with pytest.raises(AttributeError):
+        scene.contacts = "proximity"
+
+
+def test_positions_of_several_objects_are_set_together(sphere):
+    scene, a, b = two_spheres(sphere)
+    x = a.positions
+    for wrong in ({a: x + 1, b: x[:3]}, {a: x + 1, "a": x}, [(a, x)], {a: x + 1, "z": x}):
+        with pytest.raises((supple.Error, KeyError)):
+            scene.set_positions(wrong)
+        np.testing.assert_array_equal(a.positions, x)
+    scene.set_positions({a: x + 1, "b": x})
+    np.testing.assert_array_equal(a.positions, x + 1)
+    x += 1  # a copy of one's own
+
+
+def test_values_of_numpy_are_options(sphere):
+    scene = supple.Scene(contacts="proximity", contact_points=np.bool_(False), threads=np.int64(1))
+    a = scene.add(sphere, margin=np.float32(0.25), static=np.True_)
+    scene.add(sphere)
+    scene.set_pair_filter(lambda p, q: np.bool_(False))
+    assert scene.options["contact_points"] is False and len(scene.detect().proximity) == 0
+    a.set_static(np.False_)
+    for wrong in (
+        lambda: a.set_static(1),
+        lambda: a.set_self_collision("x"),
+        lambda: a.set_group(-1),
+        lambda: a.set_margin("1"),
+        lambda: scene.closest([[0, 0, 0]], mask=-1),
+        lambda: supple.make_icosphere(-1),
+        lambda: supple.make_cloth(-1, 2),
+        lambda: scene.add(np.ma.masked_array(sphere.positions), sphere.triangles),
+        lambda: scene.add(np.array([[2**53 + 1, 0, 0]] * 3), [[0, 1, 2]]),
+        lambda: scene.add("cube.obj", sphere.triangles),
+        lambda: supple.Simulation().add(sphere, springs=True),
+    ):
+        with pytest.raises(supple.Error):
+            wrong()
+    points = scene.add(np.zeros((3, 3)), points=[0, 1])
+    assert points.triangle_count == 0
+    assert "self_collision" in {each.name for each in supple.options("ObjectOptions")}
+
+
+def test_tables_of_other_shapes_and_reports(sphere):
+    scene, a, b = two_spheres(sphere)
+    result = scene.detect()
+    pairs = result.proximity
+    for odd in (pairs[None], pairs[:4].reshape(2, 2)):
+        for column in ("barycentric", "vertices", "object"):
+            with pytest.raises(supple.Error, match="one dimension"):
+                odd[column]
+    np.testing.assert_array_equal(pairs[::-2]["barycentric"], pairs["barycentric"][::-2])
+    assert pairs[:0]["vertices"].shape == (0, 2, 3) == pairs[:0]["barycentric"].shape
+    assert pickle.loads(pickle.dumps(scene.verify())).agrees
+    assert [pair.object_a for pair in pickle.loads(pickle.dumps(result))] == [0]
+    with pytest.raises(supple.Error, match="0 to 2"):
+        scene.verify_inside([[0, 0, 0]], [7], object=a)

@@ -53,6 +53,7 @@ def test_recordings(tmp_path):
     recording = supple.open(tmp_path / "run.h5")
     assert len(recording) == 5 and recording.time_step == 0.01 and recording[-1].time == pytest.approx(0.05)
     for frame, result in zip(recording, results):
+        np.testing.assert_array_equal(frame.contacts["vertices"], result.contacts["vertices"])
         for name in ("contacts", "penetrations", "curves", "object_pairs"):
             assert equal(getattr(frame, name), getattr(result, name))
     assert len(results[0].penetrations) > 0

@@ -28,7 +28,9 @@ def test_mypy():
 def test_pyright():
     pytest.importorskip("pyright")
     # Its first run loads the checker from the npm registry.
-    if subprocess.run([sys.executable, "-m", "pyright", "--version"], capture_output=True, check=False).returncode:
+    if subprocess.run(
+        [sys.executable, "-m", "pyright", "--version"], capture_output=True, check=False
+    ).returncode:
         pytest.skip("pyright cannot be loaded here")
     check("pyright", HERE / "typed_example.py")
 
