@@ -36,9 +36,7 @@ nb::object find_pairs(BroadPhaseCore& core, std::span<const Volume> volumes,
                                       : search.find_object_pairs(volumes);
     pairs.assign(found.begin(), found.end());
   }
-  auto* const list = new std::vector<IndexPair>(std::move(pairs));
-  const nb::capsule owner(list, [](void* p) noexcept { delete static_cast<std::vector<IndexPair>*>(p); });
-  return to_array<std::uint32_t, 2>(list->data(), list->size(), owner);
+  return to_own_array<std::uint32_t, 2>(std::move(pairs));
 }
 
 }  // namespace
@@ -85,17 +83,15 @@ void bind_broad_phase(nb::module_& module) {
         });
         return dict;
       });
-  module.def("enclosing_boxes", [](const Matrix<double, 3>& lowest, const Matrix<double, 3>& highest,
-                                   double radius) {
-    if (lowest.shape(0) != highest.shape(0))
-      throw Error("enclosing_boxes: both lists must have the same length");
-    std::vector<Aabb> boxes(lowest.shape(0));
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      boxes[i] = enclosing_box(rows_of<Vec3d>(lowest)[i], rows_of<Vec3d>(highest)[i], radius);
-    auto* const list = new std::vector<Aabb>(std::move(boxes));
-    const nb::capsule owner(list, [](void* p) noexcept { delete static_cast<std::vector<Aabb>*>(p); });
-    return to_array<float, 2, 3>(list->data(), list->size(), owner);
-  });
+  module.def("enclosing_boxes",
+             [](const Matrix<double, 3>& lowest, const Matrix<double, 3>& highest, double radius) {
+               if (lowest.shape(0) != highest.shape(0))
+                 throw Error("enclosing_boxes: both lists must have the same length");
+               std::vector<Aabb> boxes(lowest.shape(0));
+               for (std::size_t i = 0; i < boxes.size(); ++i)
+                 boxes[i] = enclosing_box(rows_of<Vec3d>(lowest)[i], rows_of<Vec3d>(highest)[i], radius);
+               return to_own_array<float, 2, 3>(std::move(boxes));
+             });
 }
 
 }  // namespace supple::python

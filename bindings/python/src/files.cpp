@@ -12,20 +12,11 @@
 namespace supple::python {
 namespace {
 
-template <class Value>
-nb::object list_of(const std::vector<Value>& values) {
-  return to_plain_array(std::vector<Value>(values));
+nb::object positions_array(std::vector<Vec3d> positions) {
+  return to_own_array<double, 3>(std::move(positions));
 }
-nb::object triangles_array(const std::vector<Triangle>& triangles) {
-  auto* const list = new std::vector<Triangle>(triangles);
-  const nb::capsule owner(list, [](void* p) noexcept { delete static_cast<std::vector<Triangle>*>(p); });
-  return to_array<std::uint32_t, 3>(list->data(), list->size(), owner);
-}
-nb::object edges_array(const std::vector<std::array<std::uint32_t, 2>>& edges) {
-  auto* const list = new std::vector<std::array<std::uint32_t, 2>>(edges);
-  const nb::capsule owner(
-      list, [](void* p) noexcept { delete static_cast<std::vector<std::array<std::uint32_t, 2>>*>(p); });
-  return to_array<std::uint32_t, 2>(list->data(), list->size(), owner);
+nb::object triangles_array(std::vector<Triangle> triangles) {
+  return to_own_array<std::uint32_t, 3>(std::move(triangles));
 }
 
 MeshData make_mesh(const std::string& name, const Array& positions, const Array& triangles,
@@ -125,10 +116,12 @@ void bind_files(nb::module_& module) {
           },
           nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none())
       .def("name", [](const MeshData& m) { return m.mesh.name; })
-      .def("positions", [](const MeshData& m) { return list_of(m.mesh.positions); })
+      .def("positions", [](const MeshData& m) { return positions_array(m.mesh.positions); })
       .def("triangles", [](const MeshData& m) { return triangles_array(m.mesh.triangles); })
-      .def("edges", [](const MeshData& m) { return edges_array(m.mesh.edges); })
-      .def("points", [](const MeshData& m) { return list_of(m.mesh.points); })
+      .def("edges",
+           [](const MeshData& m) { return to_own_array<std::uint32_t, 2>(std::vector(m.mesh.edges)); })
+      .def("points",
+           [](const MeshData& m) { return to_own_array<std::uint32_t>(std::vector(m.mesh.points)); })
       .def("polygons", [](const MeshData& m) {
         nb::dict dict;
         for_each_field<PolygonCounts>(
@@ -166,14 +159,14 @@ void bind_files(nb::module_& module) {
            [](const Recording& r) {
              nb::list list;
              for (const RecordedObject& each : r.header().objects)
-               list.append(nb::make_tuple(each.id, each.options.name, list_of(each.rest_positions),
+               list.append(nb::make_tuple(each.id, each.options.name, positions_array(each.rest_positions),
                                           triangles_array(each.triangles)));
              return list;
            })
       .def("frame", [](const Recording& r, std::uint64_t number) { return frame_of(r.frame(number)); })
       .def("summary", [](const Recording& r, std::uint64_t number) { return frame_of(r.summary(number)); })
       .def("positions", [](const Recording& r, std::uint64_t frame, std::size_t object) {
-        return to_plain_array(r.positions(frame, object));
+        return positions_array(r.positions(frame, object));
       });
   module.def(
       "find_first_difference", [](const Recording& a, const Recording& b, double tolerance) -> nb::object {

@@ -116,8 +116,8 @@ void bind_inspection(nb::module_& module) {
       const NodePairList list = s.node_pairs(a, b);
       std::vector<std::uint32_t> pairs;
       for (const NodePairList::Pair& pair : list.pairs) pairs.insert(pairs.end(), {pair.a, pair.b});
-      return nb::make_tuple(cells_of(list.nodes_a), cells_of(list.nodes_b), to_plain_array(std::move(pairs)),
-                            list.level_begin);
+      return nb::make_tuple(cells_of(list.nodes_a), cells_of(list.nodes_b),
+                            to_own_array<std::uint32_t>(std::move(pairs)), list.level_begin);
     });
   });
   module.def("octree_depth", [](SceneCore& core, ObjectId id) {
@@ -143,7 +143,7 @@ void bind_inspection(nb::module_& module) {
       for (const CandidatePair& pair : list.pairs)
         numbers.insert(numbers.end(),
                        {pair.object_a.index, pair.object_b.index, pair.triangle_a, pair.triangle_b});
-      return nb::make_tuple(to_plain_array(std::move(numbers)), list.total);
+      return nb::make_tuple(to_own_array<std::uint32_t>(std::move(numbers)), list.total);
     });
   });
   module.def("explain",
@@ -171,7 +171,7 @@ void bind_inspection(nb::module_& module) {
     return dict;
   });
   module.def("vertices_at_same_position", [](const Array& positions) {
-    return to_plain_array(vertices_at_same_position(positions_of(positions)));
+    return to_own_array<std::uint32_t>(vertices_at_same_position(positions_of(positions)));
   });
   module.def("welded", [](const MeshData& mesh) { return MeshData{welded(mesh.mesh)}; });
   module.def("is_open_at_seams", [](const MeshData& mesh) { return is_open_at_seams(mesh.mesh); });
@@ -179,8 +179,9 @@ void bind_inspection(nb::module_& module) {
   module.def("split_into_parts", [](const MeshData& mesh, bool weld) {
     nb::list list;
     for (MeshPart& part : split_into_parts(mesh.mesh, weld))
-      list.append(nb::make_tuple(MeshData{std::move(part.mesh)}, to_plain_array(std::move(part.vertices)),
-                                 to_plain_array(std::move(part.triangles))));
+      list.append(nb::make_tuple(MeshData{std::move(part.mesh)},
+                                 to_own_array<std::uint32_t>(std::move(part.vertices)),
+                                 to_own_array<std::uint32_t>(std::move(part.triangles))));
     return list;
   });
 }

@@ -160,26 +160,28 @@ nb::object to_table(std::span<const Row> rows, nb::handle owner) {
   }
 }
 
+/// What keeps a list for the arrays that read it.
+template <class List>
+nb::capsule owner_of(List* list) {
+  return nb::capsule(list, [](void* p) noexcept { delete static_cast<List*>(p); });
+}
+
 /// The same for a list that Python takes over.
 template <class Row>
 nb::object to_table(std::vector<Row>&& rows) {
   auto* const list = new std::vector<Row>(std::move(rows));
-  const nb::capsule owner(list, [](void* p) noexcept { delete static_cast<std::vector<Row>*>(p); });
-  return to_table(std::span<const Row>(*list), owner);
+  return to_table(std::span<const Row>(*list), owner_of(list));
 }
 
-/// A list of numbers or vectors that Python takes over, as an array that it may change.
-template <class Row>
-nb::object to_plain_array(std::vector<Row>&& rows) {
+/// A list that Python takes over as an array that it may change: each row has this shape of scalars.
+template <class Scalar, std::size_t... shape, class Row>
+nb::object to_own_array(std::vector<Row>&& rows) {
+  static_assert(sizeof(Row) == sizeof(Scalar) * (shape * ... * 1));
   auto* const list = new std::vector<Row>(std::move(rows));
-  const nb::capsule owner(list, [](void* p) noexcept { delete static_cast<std::vector<Row>*>(p); });
   static Row nothing{};
-  Row* const data = list->empty() ? &nothing : list->data();
-  if constexpr (std::is_same_v<Row, Vec3d>) {
-    return nb::cast(nb::ndarray<nb::numpy, double>(data, {list->size(), 3}, owner));
-  } else {
-    return nb::cast(nb::ndarray<nb::numpy, Row>(data, {list->size()}, owner));
-  }
+  const std::size_t sizes[] = {list->size(), shape...};
+  return nb::cast(nb::ndarray<nb::numpy, Scalar>(list->empty() ? &nothing : list->data(),
+                                                 1 + sizeof...(shape), sizes, owner_of(list)));
 }
 
 /// The answers of a query as a table with the member `found`.

@@ -34,9 +34,7 @@ nb::object table_of(const std::shared_ptr<Lists>& lists, const DetectResult& fou
   nb::object table;
   visit_lists(found, [&]<class Row>(const char* list, std::span<const Row> rows) {
     if (name != list) return;
-    auto* const owner = new std::shared_ptr<Lists>(lists);
-    table = to_table(
-        rows, nb::capsule(owner, [](void* p) noexcept { delete static_cast<std::shared_ptr<Lists>*>(p); }));
+    table = to_table(rows, owner_of(new std::shared_ptr<Lists>(lists)));
   });
   if (!table.is_valid()) throw nb::attribute_error(("a result has no list '" + name + "'").c_str());
   return table;

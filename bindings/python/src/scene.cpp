@@ -41,37 +41,32 @@ nb::object safe_step(const SafeStep& step) {
 template <class Row>
 nb::object vertices_of(const Scene& scene, const List<std::uint8_t>& bytes) {
   if (bytes.size() % sizeof(Row) != 0) throw Error("vertices: the array does not have records of this kind");
-  const std::size_t count = bytes.size() / sizeof(Row);
-  std::vector<std::uint32_t> vertices(6 * count);
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<std::array<std::uint32_t, 6>> vertices(bytes.size() / sizeof(Row));
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
     Row row;
     std::memcpy(&row, bytes.data() + i * sizeof(Row), sizeof(Row));
     for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
       const ElementVertices found = scene.vertices_of(row, side);
       for (std::size_t k = 0; k < 3; ++k)
-        vertices[6 * i + (side == ContactSide::b ? 3 : 0) + k] = found[k < found.size() ? k : 0];
+        vertices[i][(side == ContactSide::b ? 3 : 0) + k] = found[k < found.size() ? k : 0];
     }
   }
-  auto* const list = new std::vector<std::uint32_t>(std::move(vertices));
-  const nb::capsule owner(list, [](void* p) noexcept { delete static_cast<std::vector<std::uint32_t>*>(p); });
-  return to_array<std::uint32_t, 2, 3>(list->data(), count, owner);
+  return to_own_array<std::uint32_t, 2, 3>(std::move(vertices));
 }
 
 nb::object positions_of_object(const Scene& scene, ObjectId id) {
   std::vector<Vec3d> positions(scene.vertex_count(id));
   for (std::uint32_t v = 0; v < positions.size(); ++v) positions[v] = scene.position(id, v);
-  return to_plain_array(std::move(positions));
+  return to_own_array<double, 3>(std::move(positions));
 }
 
 nb::object triangles_of_object(const Scene& scene, ObjectId id) {
-  auto* const list = new std::vector<std::array<std::uint32_t, 3>>(scene.triangle_count(id));
-  const nb::capsule owner(
-      list, [](void* p) noexcept { delete static_cast<std::vector<std::array<std::uint32_t, 3>>*>(p); });
+  std::vector<Triangle> triangles(scene.triangle_count(id));
   Contact triangle;
   triangle.object_a = id;
-  for (triangle.triangle_a = 0; triangle.triangle_a < list->size(); ++triangle.triangle_a)
-    (*list)[triangle.triangle_a] = scene.vertices_of(triangle, ContactSide::a).ids;
-  return to_array<std::uint32_t, 3>(list->data(), list->size(), owner);
+  for (triangle.triangle_a = 0; triangle.triangle_a < triangles.size(); ++triangle.triangle_a)
+    triangles[triangle.triangle_a] = scene.vertices_of(triangle, ContactSide::a).ids;
+  return to_own_array<std::uint32_t, 3>(std::move(triangles));
 }
 
 nb::dict report_of(const VerifyReport& report) {
@@ -212,7 +207,7 @@ void bind_scene(nb::module_& module) {
 
   module.def("rotation_of_quaternion", [](double x, double y, double z, double w) {
     const auto& r = RigidTransform::from_quaternion(x, y, z, w).rotation;
-    return to_plain_array(std::vector<double>(r.begin(), r.end()));
+    return to_own_array<double>(std::vector<double>(r.begin(), r.end()));
   });
 
   nb::class_<SceneCore> scene(module, "Scene");

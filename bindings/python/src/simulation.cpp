@@ -108,8 +108,8 @@ MotionFunction motion_of(nb::object function) {
   return [shared](double seconds, std::span<Vec3d> positions) {
     nb::gil_scoped_acquire acquire;
     auto* const copy = new std::vector<Vec3d>(positions.begin(), positions.end());
-    const nb::capsule owner(copy, [](void* p) noexcept { delete static_cast<std::vector<Vec3d>*>(p); });
-    const nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> array(copy->data(), {copy->size(), 3}, owner);
+    const nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> array(copy->data(), {copy->size(), 3},
+                                                                 owner_of(copy));
     const nb::object answer = (*shared)(seconds, array);
     if (answer.is_none()) {
       std::copy(copy->begin(), copy->end(), positions.begin());
@@ -126,7 +126,7 @@ MotionFunction motion_of(nb::object function) {
 }
 
 nb::object copy_of(std::span<const Vec3d> positions) {
-  return to_plain_array(std::vector<Vec3d>(positions.begin(), positions.end()));
+  return to_own_array<double, 3>(std::vector<Vec3d>(positions.begin(), positions.end()));
 }
 
 nb::object add_object(SimulationCore& core, const MeshData& mesh, const nb::dict& object,
