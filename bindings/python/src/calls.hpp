@@ -49,6 +49,8 @@ class WithoutGil {
     nb::gil_scoped_release release;
     while (running_ > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+  /// In a process made by fork, the calls of other threads do not exist.
+  static void forget_calls() { running_ = 0; }
   static std::stop_token ending() { return ending_.get_token(); }
 
  private:

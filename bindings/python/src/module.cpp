@@ -51,6 +51,7 @@ NB_MODULE(_core, module) {
     return list;
   });
   module.def("end_calls", &WithoutGil::end_calls);
+  module.def("forget_calls", &WithoutGil::forget_calls);
   bind_results(module);
   bind_scene(module);
   bind_elements(module);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import os
 from typing import NamedTuple
 
 from . import _core
@@ -49,6 +50,7 @@ from ._tables import Record, Table, dtypes
 from ._view import view
 
 atexit.register(_core.end_calls)
+os.register_at_fork(after_in_child=_core.forget_calls)
 for _error in (Error, MotionError):
     _error.__doc__ = CONTRACTS[_error.__name__]
 __version__: str = _core.version

@@ -493,6 +493,31 @@ def test_fork(sphere):
     assert "before fork" in answer and f"fresh: {len(scene.result.contacts)}" in answer
 
 
+def test_a_process_made_by_fork_during_a_call_ends():
+    import subprocess
+    import sys
+
+    program = """
+import os, threading, time, supple
+mesh = supple.make_icosphere(30)
+scene = supple.Scene()
+a, b = scene.add(mesh), scene.add(mesh)
+def work():
+    while True:
+        a.positions = mesh.positions
+        scene.detect()
+threading.Thread(target=work, daemon=True).start()
+time.sleep(0.1)
+child = os.fork()
+if child:
+    raise SystemExit(os.waitpid(child, 0)[1])
+"""
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", program], capture_output=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
 def test_scenes_are_freed(sphere):
     """Neither filters, results nor objects keep a scene."""
     import weakref
