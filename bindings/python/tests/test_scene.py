@@ -473,6 +473,7 @@ def test_ctrl_c_stops_a_call():
     assert scene.detect(contacts="intersection").stopped is False
 
 
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_fork(sphere):
     scene, *_ = two_spheres(sphere)
     scene.detect()
