@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -135,15 +136,21 @@ class StoppableCall {
   explicit StoppableCall(const Stop* stop)
       : stop_(stop == nullptr ? std::stop_token() : stop->source.get_token(), Request{source_}),
         ending_(WithoutGil::ending(), Request{source_}) {
-    if (gettid() != getpid()) return;
+    if (gettid() != getpid() || sigaction(SIGINT, nullptr, &before_) != 0) return;
+    // A process that ignores Ctrl-C, such as a job in the background, ignores it here, too.
+    if (before_.sa_handler == SIG_IGN || before_.sa_handler == SIG_DFL) return;
     outer_ = std::exchange(current_, this);
     struct sigaction action {};
     action.sa_handler = [](int signal) {
+      // Any thread may get the signal; the calls of the main thread end there.
+      if (gettid() != getpid()) {
+        syscall(SYS_tgkill, getpid(), getpid(), signal);
+        return;
+      }
       if (current_ == nullptr) return;
       current_->interrupted_ = true;
       current_->source_.request_stop();
-      const auto before = current_->before_.sa_handler;
-      if (before != SIG_IGN && before != SIG_DFL) before(signal);
+      current_->before_.sa_handler(signal);
     };
     is_main_ = sigaction(SIGINT, &action, &before_) == 0;
   }

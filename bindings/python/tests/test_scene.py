@@ -454,23 +454,49 @@ def test_a_stop_from_another_thread():
     assert result.stopped and len(result) == 0 and "stopped" in repr(result)
 
 
-def test_ctrl_c_stops_a_call():
-    scene = busy_scene()
-    calls = []
+@pytest.fixture
+def on_interrupt():
+    """Sets the handler of Ctrl-C, which a test run in the background ignores."""
+    before = signal.getsignal(signal.SIGINT)
+    yield lambda handler: signal.signal(signal.SIGINT, handler)
+    signal.signal(signal.SIGINT, before)
+
+
+def interrupt_after(condition):
+    """A thread that presses Ctrl-C once the condition holds."""
 
     def interrupt():
-        while not calls:
+        while not condition():
             time.sleep(0.001)
         os.kill(os.getpid(), signal.SIGINT)
 
-    scene.set_pair_filter(lambda a, b: calls.append(1) or True)
     thread = threading.Thread(target=interrupt)
     thread.start()
+    return thread
+
+
+def test_ctrl_c_stops_a_call(on_interrupt):
+    on_interrupt(signal.default_int_handler)
+    scene = busy_scene()
+    calls = []
+    scene.set_pair_filter(lambda a, b: calls.append(1) or True)
+    thread = interrupt_after(lambda: calls)
     with pytest.raises(KeyboardInterrupt):
-        for _ in range(1000):
-            scene.detect()
+        scene.detect()
+        time.sleep(60)  # the interrupt may come after the call
     thread.join()
-    assert scene.detect(contacts="intersection").stopped is False
+    assert scene.detect(contacts="intersection", max_contacts=1).stopped is False
+
+
+def test_an_ignored_ctrl_c_changes_nothing(on_interrupt, sphere):
+    on_interrupt(signal.SIG_IGN)
+    scene, *_ = two_spheres(sphere)
+    calls = []
+    scene.set_pair_filter(lambda a, b: calls.append(1) or True)
+    thread = interrupt_after(lambda: calls)
+    while thread.is_alive():
+        assert len(scene.detect().contacts) > 0
+    thread.join()
 
 
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
@@ -571,22 +597,19 @@ def test_the_broad_phase_alone(rng):
     assert {tuple(pair) for pair in found.tolist()} == {(i, j) for i, j in wanted if kinds[i] != kinds[j]}
 
 
-def test_a_handler_of_ctrl_c_that_raises_nothing_does_not_change_answers():
+def test_a_handler_of_ctrl_c_that_raises_nothing_does_not_change_answers(on_interrupt):
     scene = supple.Scene(threads=1)
     mesh = supple.make_icosphere(20)
     scene.add(mesh)
     points = np.random.default_rng(0).uniform(-1, 1, (200_000, 3))
     wanted = scene.inside(points)
-    before = signal.signal(signal.SIGINT, lambda *_: seen.append(1))
     seen = []
-    try:
-        for _ in range(5):
-            timer = threading.Timer(0.01, lambda: os.kill(os.getpid(), signal.SIGINT))
-            timer.start()
-            np.testing.assert_array_equal(scene.inside(points), wanted)
-            timer.join()
-    finally:
-        signal.signal(signal.SIGINT, before)
+    on_interrupt(lambda *_: seen.append(1))
+    for _ in range(5):
+        timer = threading.Timer(0.01, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        np.testing.assert_array_equal(scene.inside(points), wanted)
+        timer.join()
     assert seen
 
 
