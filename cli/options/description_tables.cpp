@@ -18,7 +18,7 @@
 #include "session/messages/sections.hpp"
 #include "session/settings.hpp"
 #include "supple/format_descriptions.hpp"
-#include "supple/record_descriptions.hpp"
+#include "supple/result_lists.hpp"
 #include "supple/simulation_descriptions.hpp"
 
 namespace supple::cli {

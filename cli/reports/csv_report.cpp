@@ -11,7 +11,7 @@
 
 #include "base/text.hpp"
 #include "reports/record_json.hpp"
-#include "supple/record_descriptions.hpp"
+#include "supple/result_lists.hpp"
 
 namespace supple::cli {
 

@@ -10,7 +10,7 @@
 #include "base/json_writer.hpp"
 #include "base/text.hpp"
 #include "session/messages/described_json.hpp"
-#include "supple/record_descriptions.hpp"
+#include "supple/result_lists.hpp"
 
 namespace supple::cli {
 

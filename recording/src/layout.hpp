@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "supple/record_descriptions.hpp"
+#include "supple/result_lists.hpp"
 #include "supple/types.hpp"
 
 // The content of a recording and its location in the file, as docs/recording.md describes. Rows refer to

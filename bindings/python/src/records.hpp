@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "supple/query_descriptions.hpp"
-#include "supple/record_descriptions.hpp"
+#include "supple/result_lists.hpp"
 
 // NumPy layouts of records, made from their descriptions, and arrays of records.
 
@@ -28,6 +28,20 @@ nb::object words_as_tuple() {
   nb::list list;
   for (const char* word : words<Enum>) list.append(word);
   return nb::tuple(list);
+}
+
+/// The members of a structure by their keys; enumerations as words.
+template <Described Struct>
+nb::dict dict_of(const Struct& members) {
+  nb::dict dict;
+  for_each_field<Struct>([&]<class Value>(const Field<Struct, Value>& field) {
+    if constexpr (Worded<Value>) {
+      dict[field.key] = word_of(members.*field.member);
+    } else {
+      dict[field.key] = nb::cast(members.*field.member);
+    }
+  });
+  return dict;
 }
 
 /// A scalar for NumPy, such as `u4`, and how many of them a member has; 0 for a single one.

@@ -10,7 +10,7 @@
 
 #include "supple/difference_descriptions.hpp"
 #include "supple/query_descriptions.hpp"
-#include "supple/record_descriptions.hpp"
+#include "supple/result_lists.hpp"
 
 namespace supple {
 namespace {

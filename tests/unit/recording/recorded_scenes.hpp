@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "supple/models.hpp"
-#include "supple/record_descriptions.hpp"
 #include "supple/recording.hpp"
+#include "supple/result_lists.hpp"
 #include "supple/scene.hpp"
 #include "unit/mesh/mesh_files.hpp"
 

@@ -14,7 +14,7 @@
 
 #include "supple/error.hpp"
 #include "supple/models.hpp"
-#include "supple/record_descriptions.hpp"
+#include "supple/result_lists.hpp"
 #include "supple/scene.hpp"
 #include "support/option_word.hpp"
 
