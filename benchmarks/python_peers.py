@@ -3,16 +3,17 @@
 
 usage: python_peers.py [--rounds N] [--only NAME]... [--save MACHINE]
 
-Each contestant does the same work on one thread where it lets choose, in turn; the table has medians of wall-clock
-times, and the ratio to the package with the lowest and the highest of the rounds. Run it with PYTHONPATH=build/release/python.
-SUPPLE_DATA names the folder of the cloths. --save writes benchmarks/results/<date>-MACHINE-python.csv.
+Each contestant does the same work on one thread where it lets choose, in turn; the table has medians of
+wall-clock times, and the ratio to the package with the lowest and the highest of the rounds. Run it with
+PYTHONPATH=build/release/python. SUPPLE_DATA names the folder of the cloths. --save writes
+benchmarks/results/<date>-MACHINE-python.csv.
 
-    overhead        the time of a frame outside of `Scene::detect`: 9 spheres of 18,000 and of 69,620 triangles, and an empty scene
-    threads         two scenes in two threads against one after the other
-    frames          9 deforming spheres of 18,000 triangles: all intersecting pairs of triangles of each frame
-    proximity       cloth-ball: all pairs within a distance; and the safe step between two frames
-    closest         closest points and signed distances of many points to a sphere of 69,620 triangles
-    self            losses of a batch of 16 bodies of 13,776 triangles that cut themselves
+    overhead        the time of a frame outside of `Scene::detect`: 9 spheres of 18,000 and of 69,620
+    triangles, and an empty scene threads         two scenes in two threads against one after the other
+    frames          9 deforming spheres of 18,000 triangles: all intersecting pairs of triangles of each
+    frame proximity       cloth-ball: all pairs within a distance; and the safe step between two frames
+    closest         closest points and signed distances of many points to a sphere of 69,620 triangles self
+    losses of a batch of 16 bodies of 13,776 triangles that cut themselves
 """
 
 import argparse
@@ -178,7 +179,8 @@ def frames(rounds):
 
 
 def warp_frames(wp, wave, faces):
-    """Refit, boxes of triangles against the tree of the other mesh, then a test of triangles in single precision."""
+    """Refit, boxes of triangles against the tree of the other mesh, then a test of triangles in single
+    precision."""
     wp.config.quiet = True
     wp.init()
 

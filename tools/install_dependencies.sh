@@ -2,7 +2,8 @@
 # Installs the Debian 12 packages for a build, the tests and the demo. --ci adds the packages of the checks,
 # clang and the sanitizers; --bench adds the libraries that benchmarks compare with; --coverage adds what
 # tools/coverage.py needs; --determinism adds the compilers and emulators of tools/check_determinism.py;
-# --python adds what builds and tests the Python package; --without-viewer leaves out npm and the compiler for WebAssembly.
+# --python adds what builds and tests the Python package; --without-viewer leaves out npm and the compiler for
+# WebAssembly.
 # Returns quickly when everything is installed.
 set -euo pipefail
 

@@ -3,8 +3,8 @@
 
 usage: make_python.py [--check] [ROOT]
 
-The file has the enumerations as `enum.IntEnum`, with their values and comments, and the comments of all functions
-and methods. With --check it writes nothing and fails when the file is out of date.
+The file has the enumerations as `enum.IntEnum`, with their values and comments, and the comments of all
+functions and methods. With --check it writes nothing and fails when the file is out of date.
 """
 
 import argparse

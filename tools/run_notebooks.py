@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Runs the notebooks of the Python package from their first to their last cell; each must end without an error.
+"""Runs the notebooks of the Python package from their first to their last cell; each must end without an
+error.
 
 usage: run_notebooks.py [--pictures] [NAME]...
 
---pictures writes the last picture of each notebook as docs/images/python_NAME.png. Needs nbclient and ipykernel.
+--pictures writes the last picture of each notebook as docs/images/python_NAME.png. Needs nbclient and
+ipykernel.
 """
 
 import argparse

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds the compiled module of the Python package in build/BUILD (default: release) and runs the tests of the
 # package there, with the Python packages of bindings/python/tests/requirements.txt in a virtual environment.
-# Further arguments go to pytest: tools/test_python.sh release -k hypothesis. SUPPLE_TEST_TORCH=1 installs PyTorch,
-# without which its tests are skipped.
+# Further arguments go to pytest: tools/test_python.sh release -k hypothesis. SUPPLE_TEST_TORCH=1 installs
+# PyTorch, without which its tests are skipped.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-release}

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the source distribution and the wheel of the Python package as a user does, and tries the wheel in empty
-# environments without the build tree: with the Python that runs, and with the newest one of pyenv if it is another.
-# Then runs the tests of the compiled module with address and undefined-behaviour sanitizers.
+# Builds the source distribution and the wheel of the Python package as a user does, and tries the wheel in
+# empty environments without the build tree: with the Python that runs, and with the newest one of pyenv if it
+# is another. Then runs the tests of the compiled module with address and undefined-behaviour sanitizers.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$PWD
@@ -34,7 +34,7 @@ for python in python3 ${newest:-}; do
   "$python" -m venv "$folder/user"
   "$folder/user/bin/pip" install --quiet --disable-pip-version-check "$folder"/repaired/*.whl pytest hypothesis
   (cd "$folder" && "user/bin/python" --version && PYTHONPATH='' "user/bin/python" -m pytest -q -c /dev/null --rootdir "$root" \
-    -p no:cacheprovider "$root/bindings/python/tests/test_scene.py" "$root/bindings/python/tests/test_elements.py")
+    -p no:cacheprovider "$root"/bindings/python/tests/test_{arrays,calls,elements,scene,tables}.py)
 done
 
 clang_asan=$(clang++-19 -print-file-name=libclang_rt.asan-x86_64.so)

@@ -72,17 +72,7 @@ void bind_broad_phase(nb::module_& module) {
                 kinds, dirty);
           },
           nb::arg(), nb::arg().none(), nb::arg().none())
-      .def("stats", [](const BroadPhaseCore& core) {
-        nb::dict dict;
-        for_each_field<BroadPhaseStats>([&]<class Value>(const Field<BroadPhaseStats, Value>& field) {
-          if constexpr (Worded<Value>) {
-            dict[field.key] = word_of(core.broad_phase.stats().*field.member);
-          } else {
-            dict[field.key] = core.broad_phase.stats().*field.member;
-          }
-        });
-        return dict;
-      });
+      .def("stats", [](const BroadPhaseCore& core) { return dict_of(core.broad_phase.stats()); });
   module.def("enclosing_boxes",
              [](const Matrix<double, 3>& lowest, const Matrix<double, 3>& highest, double radius) {
                if (lowest.shape(0) != highest.shape(0))

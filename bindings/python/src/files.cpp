@@ -49,18 +49,10 @@ nb::dict frame_of(RecordedFrame&& frame) {
   nb::dict tables;
   for_each_list(
       [&](const auto& list, auto member) { tables[list.name] = to_table(std::move(member(frame))); });
-  nb::dict stats;
-  for_each_field<StepStats>([&]<class Value>(const Field<StepStats, Value>& field) {
-    if constexpr (Worded<Value>) {
-      stats[field.key] = word_of(frame.stats.*field.member);
-    } else {
-      stats[field.key] = frame.stats.*field.member;
-    }
-  });
   nb::dict dict;
   dict["time"] = frame.time;
   dict["tables"] = tables;
-  dict["stats"] = stats;
+  dict["stats"] = dict_of(frame.stats);
   return dict;
 }
 
@@ -122,12 +114,7 @@ void bind_files(nb::module_& module) {
            [](const MeshData& m) { return to_own_array<std::uint32_t, 2>(std::vector(m.mesh.edges)); })
       .def("points",
            [](const MeshData& m) { return to_own_array<std::uint32_t>(std::vector(m.mesh.points)); })
-      .def("polygons", [](const MeshData& m) {
-        nb::dict dict;
-        for_each_field<PolygonCounts>(
-            [&](const auto& field) { dict[field.key] = m.mesh.polygons.*field.member; });
-        return dict;
-      });
+      .def("polygons", [](const MeshData& m) { return dict_of(m.mesh.polygons); });
   module.def("load_mesh", [](const std::string& path) {
     const WithoutGil without_gil;
     return MeshData{load_mesh(path)};

@@ -91,14 +91,6 @@ auto inspect(SceneCore& core, const Inspect& inspect) {
   return inspect(SceneInspector(core.scene()));
 }
 
-/// The members of a structure of statistics.
-template <Described Stats>
-nb::dict dict_of(const Stats& stats) {
-  nb::dict dict;
-  for_each_field<Stats>([&](const auto& field) { dict[field.key] = nb::cast(stats.*field.member); });
-  return dict;
-}
-
 }  // namespace
 
 void bind_inspection(nb::module_& module) {

@@ -26,28 +26,22 @@ NB_MODULE(_core, module) {
   nb::exception<supple::MotionError>(module, "MotionError", error);
   module.def("options", [](const std::string& structure) {
     nb::list list;
-    bool is_known = false;
-    const auto offer = [&]<class Struct>(const Struct*) {
-      if (structure != supple::Description<Struct>::name) return;
-      list = list_options<Struct>();
-      is_known = true;
+    std::string known;
+    const auto offer = [&]<class... Structs>(const Structs&...) {
+      const auto offer_one = [&]<class Struct>(const Struct&) {
+        const char* const name = supple::Description<Struct>::name;
+        known += (known.empty() ? "" : ", ") + std::string(name);
+        if (structure != name) return false;
+        list = list_options<Struct>();
+        return true;
+      };
+      return (offer_one(Structs{}) || ...);
     };
-    const auto* const none = static_cast<const void*>(nullptr);
-    offer(static_cast<const supple::SceneOptions*>(none));
-    offer(static_cast<const supple::ObjectOptions*>(none));
-    offer(static_cast<const supple::ImpactOptions*>(none));
-    offer(static_cast<const supple::StepOptions*>(none));
-    offer(static_cast<const supple::BroadPhaseOptions*>(none));
-    offer(static_cast<const supple::SimulationOptions*>(none));
-    offer(static_cast<const supple::MassSpringOptions*>(none));
-    offer(static_cast<const supple::MassSpringMotion*>(none));
-    offer(static_cast<const supple::RigidMotion*>(none));
-    offer(static_cast<const supple::ContactResponse*>(none));
-    if (!is_known)
-      throw supple::Error(
-          "options: there are no options '" + structure +
-          "'; there are SceneOptions, ObjectOptions, ImpactOptions, StepOptions, SimulationOptions, "
-          "MassSpringOptions, MassSpringMotion, RigidMotion and ContactResponse");
+    if (!offer(supple::SceneOptions{}, supple::ObjectOptions{}, supple::ImpactOptions{},
+               supple::StepOptions{}, supple::BroadPhaseOptions{}, supple::SimulationOptions{},
+               supple::MassSpringOptions{}, supple::MassSpringMotion{}, supple::RigidMotion{},
+               supple::ContactResponse{}))
+      throw supple::Error("options: there are no options '" + structure + "'; there are those of " + known);
     return list;
   });
   module.def("end_calls", &WithoutGil::end_calls);

@@ -40,18 +40,6 @@ nb::object table_of(const std::shared_ptr<Lists>& lists, const DetectResult& fou
   return table;
 }
 
-nb::dict stats_of(const StepStats& stats) {
-  nb::dict dict;
-  for_each_field<StepStats>([&]<class Value>(const Field<StepStats, Value>& field) {
-    if constexpr (Worded<Value>) {
-      dict[field.key] = word_of(stats.*field.member);
-    } else {
-      dict[field.key] = stats.*field.member;
-    }
-  });
-  return dict;
-}
-
 }  // namespace
 
 void bind_results(nb::module_& module) {
@@ -60,7 +48,7 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("step", [](const Result& r) { return r.found.step; })
       .def_prop_ro("truncated", [](const Result& r) { return r.found.truncated; })
       .def_prop_ro("stopped", [](const Result& r) { return r.found.stopped; })
-      .def("stats", [](const Result& r) { return stats_of(r.found.stats); })
+      .def("stats", [](const Result& r) { return dict_of(r.found.stats); })
       .def("untested",
            [](const Result& r) {
              nb::list list;

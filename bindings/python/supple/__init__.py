@@ -20,9 +20,9 @@ from ._elements import (
     point_triangle_distance,
     triangles_intersect,
 )
+from ._experiment import Experiment, experiment
 from ._generated import *  # noqa: F403
 from ._generated import CONTRACTS
-from ._experiment import Experiment, experiment
 from ._inspection import Inspector, NodePairs
 from ._meshes import (
     Mesh,
@@ -42,9 +42,11 @@ from ._meshes import (
     vertices_at_same_position,
     welded,
 )
+from ._object import Object, rigid_transform
+from ._queries import WrongAnswer
 from ._recording import Frame, Recorder, Recording, find_first_difference, open, record  # noqa: A004
 from ._result import PairContacts, Result, SavedResult
-from ._scene import Object, ObjectStep, SafeStep, Scene, VerifyReport, WrongAnswer, rigid_transform
+from ._scene import ObjectStep, SafeStep, Scene, VerifyReport
 from ._simulation import MassSpringBody, SimulatedObject, Simulation, respond
 from ._tables import Record, Table, dtypes
 from ._view import view
@@ -131,6 +133,7 @@ __all__ = [
     "WrongAnswer",
     "check",
     "compute_topology",
+    "dtypes",
     "edge_edge_distance",
     "experiment",
     "enclosing_boxes",

@@ -15,8 +15,8 @@ from ._core import Error
 class BroadPhase:
     """Finds the overlapping pairs of volumes, for programs that have no meshes.
 
-    Options are those of `supple.options("BroadPhaseOptions")` and `kind_pairs`, a list of pairs of kinds (0 to 7).
-    Volume i is the same object in every call.
+    Options are those of `supple.options("BroadPhaseOptions")` and `kind_pairs`, a list of pairs of kinds (0
+    to 7). Volume i is the same object in every call.
     """
 
     def __init__(self, **options: Any) -> None:

@@ -19,9 +19,9 @@ from ._scene import Scene
 
 
 class FrameCheck(NamedTuple):
-    """What one frame has: triangle pairs that intersect (`contacts`), of them those of objects with themselves
-    (`self_contacts`), vertices inside solid objects, the largest depth of a vertex or a curve, in the unit of the
-    coordinates, and the objects of the deepest place."""
+    """What one frame has: triangle pairs that intersect (`contacts`), of them those of objects with
+    themselves (`self_contacts`), vertices inside solid objects, the largest depth of a vertex or a curve, in
+    the unit of the coordinates, and the objects of the deepest place."""
 
     frame: int
     contacts: int
@@ -32,7 +32,8 @@ class FrameCheck(NamedTuple):
 
 
 class CheckReport:
-    """The frames of a checked animation. `worst()` sorts them; `to_pandas()` is a table; `save` writes a page."""
+    """The frames of a checked animation. `worst()` sorts them; `to_pandas()` is a table; `save` writes a
+    page."""
 
     def __init__(self, source: str, names: list[str], frames: list[FrameCheck], notes: list[str]) -> None:
         self.source, self.names, self.frames, self.notes = source, names, frames, notes
@@ -135,16 +136,16 @@ def check(
     """Checks all frames of an animation for intersections, self-intersections and depths.
 
     `animation` is
-    - the path of a recording (.h5), or a pattern of mesh files of one topology, such as "frame_*.obj", in the order of
-      the numbers in their names,
-    - the path of a USD file (.usd, .usda, .usdc), which needs usd-core; its meshes at each time code. Alembic is not
-      read: export USD, or a sequence of OBJ files,
+    - the path of a recording (.h5), or a pattern of mesh files of one topology, such as "frame_*.obj", in
+      the order of the numbers in their names,
+    - the path of a USD file (.usd, .usda, .usdc), which needs usd-core; its meshes at each time code.
+      Alembic is not read: export USD, or a sequence of OBJ files,
     - an array (frames, n, 3) with `faces` (m, 3), or a list of meshes,
     - a dict of arrays by name, with a dict of faces.
 
-    Closed surfaces count as solids, for which vertices inside are counted. `weld` joins vertices with equal positions,
-    where a mesh is split along seams. `parts` makes an object of each connected part of a mesh. `progress` shows a bar,
-    which needs tqdm.
+    Closed surfaces count as solids, for which vertices inside are counted. `weld` joins vertices with equal
+    positions, where a mesh is split along seams. `parts` makes an object of each connected part of a mesh.
+    `progress` shows a bar, which needs tqdm.
     """
     source, names, topologies, frames, total = _frames(animation, faces)
     scene = Scene(contacts="penetration")

@@ -59,8 +59,8 @@ _IMPACTS = {"vertex_face": 4, "edge_edge": 4, "point_point": 2, "point_edge": 3}
 @contract(
     "first_impact",
     """`kind` is vertex_face, edge_edge, point_point or point_edge; `start` and `end` are
-(n, k, 3), with the k points of both elements in the order of the motion's members: a vertex and a face, two edges, two
-points, or a point and an edge. Options are those of `supple.options('ImpactOptions')`.""",
+(n, k, 3), with the k points of both elements in the order of the motion's members: a vertex and a face, two
+edges, two points, or a point and an edge. Options are those of `supple.options('ImpactOptions')`.""",
 )
 def first_impact(kind: str, start: Any, end: Any, **options: Any) -> Table:
     if kind not in _IMPACTS:

@@ -16,7 +16,8 @@ from ._core import Error
 
 
 class Experiment:
-    """The results of an experiment: `tables` by name, each a dict of columns, and the `page` of the report."""
+    """The results of an experiment: `tables` by name, each a dict of columns, and the `page` of the
+    report."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = pathlib.Path(folder)
@@ -59,9 +60,9 @@ def _column(texts: list[str]) -> npt.NDArray[Any]:
 def experiment(name: str, output: str | os.PathLike[str] | None = None, **options: Any) -> Experiment:
     """Runs an experiment of the paper: table1, scaling, arity, volumes or claims.
 
-    Options are those of `supple experiment --help` with underscores: `experiment("table1", quick=True, objects=(3, 6))`.
-    `output` is the folder of the tables and the page; without it, a temporary one. Needs the command line program.
-    `Experiment(folder)` reads the tables of an earlier run.
+    Options are those of `supple experiment --help` with underscores: `experiment("table1", quick=True,
+    objects=(3, 6))`. `output` is the folder of the tables and the page; without it, a temporary one. Needs
+    the command line program. `Experiment(folder)` reads the tables of an earlier run.
     """
     folder = os.fspath(output) if output is not None else tempfile.mkdtemp(prefix="supple-")
     arguments = []

@@ -13,8 +13,8 @@ from ._scene import Scene
 
 
 class NodePairs(NamedTuple):
-    """The pairs of nodes of two octrees that collide, by level: `pairs` (k, 2) are places in `nodes_a` and `nodes_b`;
-    level i has the pairs from `level_begin[i]` to `level_begin[i + 1]`."""
+    """The pairs of nodes of two octrees that collide, by level: `pairs` (k, 2) are places in `nodes_a` and
+    `nodes_b`; level i has the pairs from `level_begin[i]` to `level_begin[i + 1]`."""
 
     nodes_a: list[dict[str, Any]]
     nodes_b: list[dict[str, Any]]
@@ -23,7 +23,8 @@ class NodePairs(NamedTuple):
 
 
 class Inspector:
-    """Looks into a scene and its last `detect`, for drawing and learning. Boxes are pairs of corners; None is empty."""
+    """Looks into a scene and its last `detect`, for drawing and learning. Boxes are pairs of corners; None
+    is empty."""
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene

@@ -106,9 +106,9 @@ class Result(_Lists):
 
     Its lists are attributes: `contacts`, `contact_points`, `continuous_contacts` (also `continuous`),
     `proximity_pairs` (also `proximity`), `penetrations`, `contained_parts`, `curves`, `manifolds`,
-    `object_pairs`, ... Each is a `Table`: a read-only structured array without a copy, which stays valid as long
-    as you hold it, also after the next detection. `len(result)` is the number of contacts; iteration gives a
-    `PairContacts` for each two objects that have some.
+    `object_pairs`, ... Each is a `Table`: a read-only structured array without a copy, which stays valid as
+    long as you hold it, also after the next detection. `len(result)` is the number of contacts; iteration
+    gives a `PairContacts` for each two objects that have some.
     """
 
     def __init__(self, core: Any, scene: Any) -> None:

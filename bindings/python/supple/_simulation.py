@@ -1,4 +1,5 @@
-"""Bodies of masses and springs, rigid objects, and objects with a motion of the user, with their collisions."""
+"""Bodies of masses and springs, rigid objects, and objects with a motion of the user, with their
+collisions."""
 
 from __future__ import annotations
 
@@ -38,7 +39,8 @@ class SimulatedObject:
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
-        """The positions of all vertices, (n, 3), as a copy. Set it to move an object; a body keeps its velocities."""
+        """The positions of all vertices, (n, 3), as a copy. Set it to move an object; a body keeps its
+        velocities."""
         return self._simulation._core.positions(self._id)
 
     @positions.setter
@@ -47,7 +49,8 @@ class SimulatedObject:
 
     @property
     def velocities(self) -> npt.NDArray[np.float64] | None:
-        """The velocities of the vertices of a body of masses and springs, (n, 3), m/s; None for other objects."""
+        """The velocities of the vertices of a body of masses and springs, (n, 3), m/s; None for other
+        objects."""
         return self._simulation._core.velocities(self._id)
 
     def __index__(self) -> int:
@@ -60,8 +63,9 @@ class SimulatedObject:
 class Simulation:
     """Moves objects by their own motion, step by step, and finds the collisions between them.
 
-    Options are keywords; `supple.options("SimulationOptions")` lists them, with those of the scene: `time_step`,
-    `border` (two corners), `seed`, `response` (a dict; see `supple.options("ContactResponse")`), `contacts`, ...
+    Options are keywords; `supple.options("SimulationOptions")` lists them, with those of the scene:
+    `time_step`, `border` (two corners), `seed`, `response` (a dict; see
+    `supple.options("ContactResponse")`), `contacts`, ...
 
         simulation = supple.Simulation(border=[[-1, -1, -1], [1, 1, 1]], seed=1)
         simulation.add(supple.make_model("rabbit"), springs={"random_speed": 0.4})
@@ -93,10 +97,10 @@ class Simulation:
         """Adds an object with at most one motion.
 
         `springs`: a body of masses and springs, with the options of `supple.options("MassSpringMotion")`;
-        `fixed_vertices` do not move, and each of `handles`, a pair (vertices, {"by": (x, y, z), "seconds": s}), moves
-        and then stops. `rigid`: a rigid object, with the options of `supple.options("RigidMotion")`. `motion`: a
-        function of (seconds, positions) that changes the array or returns a new one; it is called with the GIL once
-        per step. `options` are those of `Scene.add`.
+        `fixed_vertices` do not move, and each of `handles`, a pair (vertices, {"by": (x, y, z), "seconds":
+        s}), moves and then stops. `rigid`: a rigid object, with the options of
+        `supple.options("RigidMotion")`. `motion`: a function of (seconds, positions) that changes the array
+        or returns a new one; it is called with the GIL once per step. `options` are those of `Scene.add`.
         """
         if sum(each is not None for each in (springs, rigid, motion)) > 1:
             raise Error("add: an object has one motion: springs, rigid or motion")

@@ -89,11 +89,11 @@ class Record:
 class Table(np.ndarray):
     """A list of records: a structured array of NumPy without a copy, read-only, valid as long as it is held.
 
-    `table["distance"]` is a column without a copy. Further columns are made from these: `vertices`, the vertex
-    ids of both elements, (n, 2, 3), where an element with fewer vertices repeats its first one, with the weight
-    0; and both sides of a column in one, (n, 2, ...): `barycentric` of `barycentric_a` and `barycentric_b`,
-    `element`, `object`, `point`, `triangle`, `kind`. `table[i]` is a row with its columns as attributes, and
-    `table[mask]` a table.
+    `table["distance"]` is a column without a copy. Further columns are made from these: `vertices`, the
+    vertex ids of both elements, (n, 2, 3), where an element with fewer vertices repeats its first one, with
+    the weight 0; and both sides of a column in one, (n, 2, ...): `barycentric` of `barycentric_a` and
+    `barycentric_b`, `element`, `object`, `point`, `triangle`, `kind`. `table[i]` is a row with its columns
+    as attributes, and `table[mask]` a table.
     """
 
     record: str = ""

@@ -7,7 +7,6 @@ import os
 import pathlib
 import tempfile
 import webbrowser
-from typing import Any
 
 from . import _program
 from ._recording import Recording, record
@@ -36,8 +35,8 @@ class Page:
 def view(
     shown: Scene | Simulation | Recording | str | os.PathLike[str], page: str | os.PathLike[str] | None = None
 ) -> Page:
-    """Makes the viewer's page: of the present state and the last result of a scene or a simulation, of all frames of
-    a recording, or of what the program views (a mesh, a scene file, a recording).
+    """Makes the viewer's page: of the present state and the last result of a scene or a simulation, of all
+    frames of a recording, or of what the program views (a mesh, a scene file, a recording).
 
     `page` is the path of the page; without it, the page is a temporary file. Needs the command line program.
     """

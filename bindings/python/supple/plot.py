@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Iterable
 
-from ._result import ANSWERS, _LISTS, _Lists
+from ._result import _LISTS, ANSWERS, _Lists
 
 _STAGES = (
     "refit_seconds",
@@ -26,7 +26,8 @@ def _axes(axes: Any) -> Any:
 
 
 def counts(frames: Iterable[_Lists], axes: Any = None) -> Any:
-    """The number of contacts of each kind by frame: of results, or of the frames of a recording. Returns the axes."""
+    """The number of contacts of each kind by frame: of results, or of the frames of a recording. Returns the
+    axes."""
     axes = _axes(axes)
     found = [each._counts() for each in frames]
     for name in ANSWERS:

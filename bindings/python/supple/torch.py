@@ -1,10 +1,11 @@
 """Losses of PyTorch that keep surfaces apart.
 
-Detection finds the pairs; distances and depths are computed again from the positions, so that autograd gives their
-gradient. The gradient is exact where the set of pairs and their features do not change. The losses are continuous where
-a pair comes within the margin. They are not where a pair of triangles begins or ends to cut through each other
-(`penetration_loss`, `self_penetration_loss`: by the depth of the pair there, which is 0, times the number of pairs; so
-the value is continuous and its gradient is not), and where other features become the nearest.
+Detection finds the pairs; distances and depths are computed again from the positions, so that autograd gives
+their gradient. The gradient is exact where the set of pairs and their features do not change. The losses are
+continuous where a pair comes within the margin. They are not where a pair of triangles begins or ends to cut
+through each other (`penetration_loss`, `self_penetration_loss`: by the depth of the pair there, which is 0,
+times the number of pairs; so the value is continuous and its gradient is not), and where other features
+become the nearest.
 
 Tensors may be float32 or float64, on any device: positions are copied to the host for the detection.
 """
@@ -27,10 +28,12 @@ _AXES = [(i, j) for i in range(3) for j in range(3)]
 def proximity_loss(
     vertices_a: Tensor, faces_a: Any, vertices_b: Tensor, faces_b: Any, margin: float
 ) -> Tensor:
-    """The sum of (1 - d / margin)² over all pairs of features of two meshes with a distance d below the margin.
+    """The sum of (1 - d / margin)² over all pairs of features of two meshes with a distance d below the
+    margin.
 
-    `vertices_a` is (n, 3) or a batch (b, n, 3), `vertices_b` (m, 3) or (b, m, 3), and `faces_*` (k, 3). Returns a scalar,
-    or (b,) for a batch. Each call keeps the octrees of the faces in `Pairs`; use it for many calls.
+    `vertices_a` is (n, 3) or a batch (b, n, 3), `vertices_b` (m, 3) or (b, m, 3), and `faces_*` (k, 3).
+    Returns a scalar, or (b,) for a batch. Each call keeps the octrees of the faces in `Pairs`; use it for
+    many calls.
     """
     return Pairs((faces_a, faces_b), margin=margin).proximity(vertices_a, vertices_b)
 
@@ -38,20 +41,21 @@ def proximity_loss(
 def penetration_loss(vertices: Tensor, faces: Any, solid_vertices: Tensor, solid_faces: Any) -> Tensor:
     """The sum of the squared depths of the vertices of a mesh inside a solid, whose surface is closed.
 
-    Shapes as for `proximity_loss`. The depth of a vertex is its distance to the surface; its gradient moves the vertex
-    out and the surface towards it.
+    Shapes as for `proximity_loss`. The depth of a vertex is its distance to the surface; its gradient moves
+    the vertex out and the surface towards it.
     """
     return Pairs((faces, solid_faces), solid=True).penetration(vertices, solid_vertices)
 
 
 def self_penetration_loss(vertices: Tensor, faces: Any, margin: float = 0) -> Tensor:
-    """The sum over a mesh with itself, for `vertices` (n, 3) or a batch (b, n, 3): of the squared depth of each two
-    triangles that intersect, and of (margin - d)² for each two features with a distance d below the margin.
+    """The sum over a mesh with itself, for `vertices` (n, 3) or a batch (b, n, 3): of the squared depth of
+    each two triangles that intersect, and of (margin - d)² for each two features with a distance d below the
+    margin.
 
-    The depth of two triangles is the length of the shortest translation that separates them: of a closed surface whose
-    triangles are oriented alike, only translations count that bring each triangle to the outer side of the other one, so
-    that all pairs of a deep fold push the same way. Triangles with a common vertex do not count. Returns a scalar, or
-    (b,) for a batch.
+    The depth of two triangles is the length of the shortest translation that separates them: of a closed
+    surface whose triangles are oriented alike, only translations count that bring each triangle to the outer
+    side of the other one, so that all pairs of a deep fold push the same way. Triangles with a common vertex
+    do not count. Returns a scalar, or (b,) for a batch.
     """
     return Pairs((faces,), margin=margin).self_penetration(vertices)
 
@@ -149,7 +153,8 @@ class Pairs:
         return loss
 
     def _orientation(self, vertices: Tensor) -> int:
-        """1 when the normals of a closed surface point outward, -1 when they point inward, 0 for an open one."""
+        """1 when the normals of a closed surface point outward, -1 when they point inward, 0 for an open
+        one."""
         if self._is_closed is None:
             self._is_closed = not fault_of_solid(Mesh(np.zeros((len(vertices), 3)), self._faces[0]))
         if not self._is_closed:
@@ -171,8 +176,8 @@ def _like(values: Any, like: Tensor) -> Tensor:
 
 
 def _distances(pairs: Any, meshes: tuple[Tensor, ...]) -> Tensor:
-    """The distances of pairs along their normals, with the barycentric coordinates fixed: at the closest points the
-    distance does not change with them to first order."""
+    """The distances of pairs along their normals, with the barycentric coordinates fixed: at the closest
+    points the distance does not change with them to first order."""
     ids, weights = pairs["vertices"], pairs["barycentric"]
     points = [
         (_like(weights[:, side], mesh)[:, :, None] * mesh[_index(ids[:, side], mesh)]).sum(dim=1)
@@ -182,8 +187,9 @@ def _distances(pairs: Any, meshes: tuple[Tensor, ...]) -> Tensor:
 
 
 def _depths_of_triangles(a: Tensor, b: Tensor, orientation: int) -> Tensor:
-    """The shortest translations that separate triangles a from b, (k, 3, 3) each, by their separating axes. With an
-    orientation of the normals: only those that bring a to the outer side of b, and b to that of a."""
+    """The shortest translations that separate triangles a from b, (k, 3, 3) each, by their separating axes.
+    With an orientation of the normals: only those that bring a to the outer side of b, and b to that of
+    a."""
     edges_a, edges_b = a[:, [1, 2, 0]] - a, b[:, [1, 2, 0]] - b
     normal_a = _torch.linalg.cross(edges_a[:, 0], edges_a[:, 1])
     normal_b = _torch.linalg.cross(edges_b[:, 0], edges_b[:, 1])

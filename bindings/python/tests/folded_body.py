@@ -25,7 +25,8 @@ def faces_of_limb():
 
 
 def limb(angles, length=1.0, radius=0.06):
-    """The vertices (n, 3) of the limb, bent in a plane by these angles in radians, smoothly around each joint."""
+    """The vertices (n, 3) of the limb, bent in a plane by these angles in radians, smoothly around each
+    joint."""
     place = torch.linspace(0, 1, RINGS, dtype=angles.dtype)
     joints = (torch.arange(JOINTS, dtype=angles.dtype) + 1) / (JOINTS + 1)
     heading = (angles * torch.sigmoid((place[:, None] - joints) * 40)).sum(dim=1)

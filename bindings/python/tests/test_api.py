@@ -5,10 +5,10 @@ import inspect
 import json
 
 from conftest import ROOT
+from supple._contracts import twins
 
 import supple
 from supple import _elements, _meshes, _recording
-from supple._contracts import twins
 
 #: Types whose members are all there, because they are made from the descriptions: columns of tables.
 RECORDS = {

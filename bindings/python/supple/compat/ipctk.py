@@ -4,10 +4,10 @@
     near = mesh.collisions(vertices, dhat)            # near.vv, near.ev, near.fv, near.ee
     step = mesh.collision_free_step(x0, x1)
 
-Differences. Verdicts are exact: a pair is listed when its distance is at most `dhat`, as exact arithmetic decides, and
-a step is never too long. Each pair of features is listed once; the toolkit's listing of vertex-edge and vertex-vertex
-pairs with multiplicities (weights) and its mollifier of nearly parallel edges are not computed. `min_distance` of a
-step is the separation that all elements keep if they have it.
+Differences. Verdicts are exact: a pair is listed when its distance is at most `dhat`, as exact arithmetic
+decides, and a step is never too long. Each pair of features is listed once; the toolkit's listing of
+vertex-edge and vertex-vertex pairs with multiplicities (weights) and its mollifier of nearly parallel edges
+are not computed. `min_distance` of a step is the separation that all elements keep if they have it.
 """
 
 from __future__ import annotations

@@ -1,10 +1,12 @@
-"""The calls of `trimesh.collision`, on supple: `CollisionManager`, `ContactData`, `DistanceData`, `scene_to_collision`.
+"""The calls of `trimesh.collision`, on supple: `CollisionManager`, `ContactData`, `DistanceData`,
+`scene_to_collision`.
 
     from supple.compat.trimesh import CollisionManager
 
-Differences: meshes are surfaces, never convex solids. Where a mesh is watertight, an object inside it collides, too.
-The depth of a contact is that of its curve of intersection: how far the first object must move along the curve's
-normal to leave the other one. The distance of objects that intersect is 0, not negative.
+Differences: meshes are surfaces, never convex solids. Where a mesh is watertight, an object inside it
+collides, too. The depth of a contact is that of its curve of intersection: how far the first object must
+move along the curve's normal to leave the other one. The distance of objects that intersect is 0, not
+negative.
 """
 
 from __future__ import annotations
@@ -15,13 +17,15 @@ import numpy as np
 import numpy.typing as npt
 
 from .._meshes import Mesh, as_mesh, fault_of_solid
-from .._scene import Object, Scene
+from .._object import Object
+from .._scene import Scene
 
 _EXTERNAL = "__external"
 
 
 class ContactData:
-    """A contact: the `names` of both objects, `point`, `normal` (from the second object to the first), `depth`."""
+    """A contact: the `names` of both objects, `point`, `normal` (from the second object to the first),
+    `depth`."""
 
     def __init__(
         self, names: tuple[str, str], faces: tuple[int, int], point: Any, normal: Any, depth: float
@@ -39,7 +43,8 @@ class ContactData:
 
 
 class DistanceData:
-    """The smallest distance of two objects: their `names`, `distance`, and for each name the nearest face and point."""
+    """The smallest distance of two objects: their `names`, `distance`, and for each name the nearest face
+    and point."""
 
     def __init__(
         self, names: tuple[str, str], faces: tuple[int, int], points: tuple[Any, Any], distance: float
@@ -109,7 +114,8 @@ class CollisionManager:
     def in_collision_single(
         self, mesh: Any, transform: Any = None, return_names: bool = False, return_data: bool = False
     ) -> Any:
-        """Whether a mesh collides with any object; with the names of these objects and the contacts, if wanted."""
+        """Whether a mesh collides with any object; with the names of these objects and the contacts, if
+        wanted."""
         external = self._add(mesh, transform, _EXTERNAL)
         try:
             names = {entry.added.index: name for name, entry in self._entries.items()} | {
@@ -155,7 +161,8 @@ class CollisionManager:
     def min_distance_single(
         self, mesh: Any, transform: Any = None, return_name: bool = False, return_data: bool = False
     ) -> Any:
-        """The smallest distance of a mesh to all objects; with the name of the nearest one and data, if wanted."""
+        """The smallest distance of a mesh to all objects; with the name of the nearest one and data, if
+        wanted."""
         external = self._add(mesh, transform, _EXTERNAL)
         try:
             names = {entry.added.index: name for name, entry in self._entries.items()} | {

@@ -1,0 +1,211 @@
+"""Calls from threads, their stop by Ctrl-C and from other threads, fork, and the end of the interpreter."""
+
+import gc
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import weakref
+
+import numpy as np
+import pytest
+from conftest import two_spheres
+
+import supple
+
+
+def test_two_threads(sphere):
+    """Calls of one scene wait for each other; two scenes run at once."""
+    scene, a, b = two_spheres(sphere, threads=1)
+    wanted = len(scene.detect().contacts)
+    failed = []
+
+    def work():
+        try:
+            for _ in range(20):
+                result = scene.detect()
+                assert len(result.contacts) == wanted
+                scene.closest([[0, 0, 3.0]])
+        except Exception as error:  # noqa: BLE001
+            failed.append(error)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert failed == []
+
+
+def busy_scene():
+    """A scene whose detection takes seconds."""
+    scene = supple.Scene(contacts="proximity", threads=1)
+    mesh = supple.make_icosphere(40)
+    for _ in range(2):
+        scene.add(mesh, margin=0.3)
+    return scene
+
+
+def test_a_stop_from_another_thread():
+    scene, stop = busy_scene(), supple.Stop()
+    stop.request()
+    result = scene.detect(stop=stop)
+    assert result.stopped and len(result) == 0 and "stopped" in repr(result)
+
+
+@pytest.fixture
+def on_interrupt():
+    """Sets the handler of Ctrl-C, which a test run in the background ignores."""
+    before = signal.getsignal(signal.SIGINT)
+    yield lambda handler: signal.signal(signal.SIGINT, handler)
+    signal.signal(signal.SIGINT, before)
+
+
+def interrupt_after(condition):
+    """A thread that presses Ctrl-C once the condition holds."""
+
+    def interrupt():
+        while not condition():
+            time.sleep(0.001)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=interrupt)
+    thread.start()
+    return thread
+
+
+def test_ctrl_c_stops_a_call(on_interrupt):
+    on_interrupt(signal.default_int_handler)
+    scene = busy_scene()
+    calls = []
+    scene.set_pair_filter(lambda a, b: calls.append(1) or True)
+    thread = interrupt_after(lambda: calls)
+    with pytest.raises(KeyboardInterrupt):
+        scene.detect()
+        time.sleep(60)  # the interrupt may come after the call
+    thread.join()
+    assert scene.detect(contacts="intersection", max_contacts=1).stopped is False
+
+
+def test_an_ignored_ctrl_c_changes_nothing(on_interrupt, sphere):
+    on_interrupt(signal.SIG_IGN)
+    scene, *_ = two_spheres(sphere)
+    calls = []
+    scene.set_pair_filter(lambda a, b: calls.append(1) or True)
+    thread = interrupt_after(lambda: calls)
+    while thread.is_alive():
+        assert len(scene.detect().contacts) > 0
+    thread.join()
+
+
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_fork(sphere):
+    scene, *_ = two_spheres(sphere)
+    scene.detect()
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        answer = b"no error"
+        try:
+            scene.detect()
+        except supple.Error as error:
+            answer = str(error).encode()
+        fresh, *_ = two_spheres(sphere)
+        answer += b"; fresh: %d" % len(fresh.detect().contacts)
+        os.write(write, answer)
+        os._exit(0)
+    assert os.waitpid(child, 0)[1] == 0
+    answer = os.read(read, 1000).decode()
+    assert "before fork" in answer and f"fresh: {len(scene.result.contacts)}" in answer
+
+
+def test_a_process_made_by_fork_during_a_call_ends():
+
+    program = """
+import os, threading, time, supple
+mesh = supple.make_icosphere(30)
+scene = supple.Scene()
+a, b = scene.add(mesh), scene.add(mesh)
+def work():
+    while True:
+        a.positions = mesh.positions
+        scene.detect()
+threading.Thread(target=work, daemon=True).start()
+time.sleep(0.1)
+child = os.fork()
+if child:
+    raise SystemExit(os.waitpid(child, 0)[1])
+"""
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", program], capture_output=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_scenes_are_freed(sphere):
+    """Neither filters, results nor objects keep a scene."""
+
+    scene, a, _ = two_spheres(sphere)
+    scene.set_pair_filter(lambda p, q: p.index >= 0)
+    contacts = scene.detect().contacts
+    gone = weakref.ref(scene)
+    del scene, a, _
+    gc.collect()
+    assert gone() is None and len(contacts) > 0
+
+
+def test_a_handler_of_ctrl_c_that_raises_nothing_does_not_change_answers(on_interrupt):
+    scene = supple.Scene(threads=1)
+    mesh = supple.make_icosphere(20)
+    scene.add(mesh)
+    points = np.random.default_rng(0).uniform(-1, 1, (200_000, 3))
+    wanted = scene.inside(points)
+    seen = []
+    on_interrupt(lambda *_: seen.append(1))
+    for _ in range(5):
+        timer = threading.Timer(0.01, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        np.testing.assert_array_equal(scene.inside(points), wanted)
+        timer.join()
+    assert seen
+
+
+def test_a_stopped_query_has_no_answer(sphere):
+    scene, a, b = two_spheres(sphere)
+    scene.detect()
+    stop = supple.Stop()
+    stop.request()
+    assert stop.requested
+    for query in (
+        lambda: scene.any_contact(a, b, stop=stop),
+        lambda: scene.distance(a, b, stop=stop),
+        lambda: scene.inside([[0, 0, 0]], stop=stop),
+        lambda: scene.closest([[0, 0, 0]], stop=stop),
+        lambda: scene.verify(stop=stop),
+    ):
+        with pytest.raises(supple.Error, match="stopped, so there is no answer"):
+            query()
+    assert "(stopped)" in repr(scene.search(contacts="intersection", stop=stop))
+
+
+def test_the_interpreter_ends_while_a_call_runs(tmp_path):
+
+    for call in ("scene.detect(); a.positions = x", "supple.Scene().add(mesh)", "scene.closest(x)"):
+        program = f"""
+import threading, time, supple
+mesh = supple.make_icosphere(40)
+x = mesh.positions
+scene = supple.Scene()
+a, b = scene.add(mesh), scene.add(x + [0.1, 0, 0], mesh.triangles)
+def work():
+    while True:
+        {call}
+threading.Thread(target=work, daemon=True).start()
+time.sleep(0.2)
+"""
+        done = subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False
+        )
+        assert done.returncode == 0 and "terminate" not in done.stderr, done.stderr
