@@ -24,6 +24,8 @@ import sys, zipfile
 names = zipfile.ZipFile(sys.argv[1]).namelist()
 assert "-cp310-abi3-manylinux" in sys.argv[1], sys.argv[1]
 assert any(name.startswith("supple.libs/libtbb") for name in names), names
+missing = {f"supple/bin/supple{end}" for end in ("", "-experiment", "-experiment-report")} - set(names)
+assert not missing, missing
 wrong = [name for name in names if name.startswith(("tests", "include", "lib/", "share")) or name.endswith((".cpp", ".hpp"))]
 assert not wrong, wrong
 CHECK
@@ -35,6 +37,9 @@ for python in python3 ${newest:-}; do
   "$folder/user/bin/pip" install --quiet --disable-pip-version-check "$folder"/repaired/*.whl pytest hypothesis
   (cd "$folder" && "user/bin/python" --version && PYTHONPATH='' "user/bin/python" -m pytest -q -c /dev/null --rootdir "$root" \
     -p no:cacheprovider "$root"/bindings/python/tests/test_{arrays,calls,elements,scene,tables}.py)
+  # The command is the program of the wheel, with the viewer's page.
+  (cd "$folder" && PATH=$PWD/user/bin:/usr/bin:/bin && supple --version && python -m supple --generate shape | head -3 &&
+    supple view "$root/scenes/nine.toml" --export nine.html && grep -q '<html' nine.html)
 done
 
 clang_asan=$(clang++-19 -print-file-name=libclang_rt.asan-x86_64.so)
