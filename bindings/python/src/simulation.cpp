@@ -251,6 +251,10 @@ void bind_simulation(nb::module_& module) {
     const AreaError error = b.area_error();
     return nb::make_tuple(error.largest, error.mean);
   });
+  body.def("edge_strain", [](const MassSpringBody& b) {
+    const EdgeStrain strain = b.edge_strain();
+    return nb::make_tuple(strain.largest, strain.mean);
+  });
   body.def("springs", [](const MassSpringBody& b) {
     std::vector<std::uint32_t> ends;
     std::vector<double> lengths;

@@ -337,6 +337,8 @@ CONTRACTS = {
         'The volume that closed parts enclose, m³, negative for parts wound inward; 0 when none is closed. Parts with a vertex that is not finite at rest do not count.',
     'MassSpringBody::center_of_mass':
         'Σ m x × v, about the origin',
+    'MassSpringBody::edge_strain':
+        'The volume that closed parts enclose, m³, negative for parts wound inward; 0 when none is closed. Parts with a vertex that is not finite at rest do not count.',
     'MassSpringBody::energy':
         'See `MassSpringBody::energy` in supple/motion.hpp.',
     'MassSpringBody::mean_velocity':
@@ -538,7 +540,7 @@ CONTRACTS = {
     'Simulation::add':
         "Adds an object that only `set_positions` moves, a body of masses and springs, a rigid object that moves, or an object with the user's motion. Throws `Error` as `Scene.add` and `MassSpringBody` do.",
     'Simulation::body':
-        'The masses and springs of an object; null when it has none. The pointer is valid until the object is removed. The scene sees positions that are set here after the next step. Until `deform_seconds` have passed, the simulation sets the external forces.',
+        'The masses and springs of an object; null when it has none. The pointer is valid until the object is removed. The scene sees positions that are set here after the next step. While random forces act, the simulation sets the external forces.',
     'Simulation::detect':
         'Finds the contacts at the present positions. Nothing moves: continuous contacts are those at time 0. The request gives the limits of the detection, here and below; its kinds must be those of the scene. A detection that is stopped has no contacts, but the step was taken.',
     'Simulation::keep_result':

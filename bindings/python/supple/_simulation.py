@@ -305,6 +305,11 @@ class MassSpringBody:
         return self._core.area_error()
 
     @property
+    def edge_strain(self) -> tuple[float, float]:
+        """The largest and the mean strain of the edges, relative to their rest lengths."""
+        return self._core.edge_strain()
+
+    @property
     def springs(self) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.float64]]:
         """The vertices of the spring on each edge, (k, 2), sorted, and their present rest lengths, (k,)."""
         (_, ends), (_, lengths) = self._core.springs()

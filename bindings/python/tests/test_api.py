@@ -60,6 +60,7 @@ NESTED_OPTIONS = {
 #: Types that are something else in Python; their members go with them.
 TYPES = {
     "AreaError": "MassSpringBody.area_error",
+    "EdgeStrain": "MassSpringBody.edge_strain",
     "BroadPhase": "BroadPhase.find",
     "BroadPhaseStats": "BroadPhase.stats",
     "CallLimits": "Stop",
@@ -157,6 +158,7 @@ OTHERS = {
     "MassSpringBody::angular_momentum": "MassSpringBody.angular_momentum",
     "MassSpringBody::area": "MassSpringBody.area",
     "MassSpringBody::area_error": "MassSpringBody.area_error",
+    "MassSpringBody::edge_strain": "MassSpringBody.edge_strain",
     "MassSpringBody::center_of_mass": "MassSpringBody.center_of_mass",
     "MassSpringBody::energy": "MassSpringBody.energy",
     "MassSpringBody::mean_velocity": "MassSpringBody.mean_velocity",

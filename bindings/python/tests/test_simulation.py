@@ -134,6 +134,9 @@ def test_a_body_of_masses_and_springs():
     assert np.all(body.velocities[0] == 0) and body.vertex_count == 25
     ends, lengths = body.springs
     assert ends.shape == (len(lengths), 2) and body.area_error[0] >= body.area_error[1] >= 0
+    x = body.positions
+    strains = np.abs(np.linalg.norm(x[ends[:, 0]] - x[ends[:, 1]], axis=1) / lengths - 1)
+    assert np.allclose(body.edge_strain, (strains.max(), strains.mean()), rtol=1e-12)
     body.undo_step()
     with pytest.raises(supple.Error):
         body.undo_step()

@@ -87,6 +87,13 @@ struct AreaError {
   double mean = 0;
 };
 
+/// The strain |l - l0| / l0 over all edges, with the length l0 > 0 that each has in the mesh times
+/// `rest_length`, or that plastic flow gave it.
+struct EdgeStrain {
+  double largest = 0;
+  double mean = 0;
+};
+
 /// A mesh as masses at its vertices and springs on its edges: section 4 of the paper, eq. 1 and 2.
 ///
 ///     m a = f_springs + f_areas + f_volumes + f_external + m g - air_friction (v - v_air) (eq. 1)
@@ -180,6 +187,7 @@ class MassSpringBody {
   /// with a vertex that is not finite at rest do not count.
   double volume() const;
   AreaError area_error() const;
+  EdgeStrain edge_strain() const;
   /// The spring on an edge: its vertices, a < b, and its present rest length, which plastic flow changes.
   struct Spring {
     std::uint32_t a = 0, b = 0;

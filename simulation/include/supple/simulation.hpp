@@ -33,10 +33,15 @@ struct MassSpringMotion {
   MassSpringOptions springs{};
   Vec3d velocity{};         ///< from `deform_seconds` on, m/s
   double random_speed = 0;  ///< speed in a random direction, added to `velocity`, m/s, ≥ 0
-  /// Root mean square of the random forces on the vertices, N, ≥ 0. The forces are constant waves about as
-  /// long as the object, so neighbours get similar forces. Their sum and their torque are zero.
+  /// Root mean square of the random forces on the vertices, N, ≥ 0. The forces are waves about as long as the
+  /// object, so neighbours get similar forces. Their sum and their torque are zero.
   double random_force = 0;
-  double deform_seconds = 0;            ///< how long the random forces act, s, ≥ 0
+  /// How long the object deforms in place before it gets its velocity, s, ≥ 0. Constant random forces end
+  /// then.
+  double deform_seconds = 0;
+  /// Time in which the random forces change smoothly into others that are independent of them, s, ≥ 0. Above
+  /// 0 they act from the first step to the last. 0: they are constant and end after `deform_seconds`.
+  double force_change_seconds = 0;
   std::optional<std::uint64_t> seed{};  ///< replaces the object's index
 
   /// Vertices that move at constant velocity and then stop.
@@ -169,8 +174,8 @@ class Simulation {
   /// the user's motion moves the object.
   void set_positions(ObjectId object, std::span<const Vec3d> positions);
   /// The masses and springs of an object; null when it has none. The pointer is valid until the object is
-  /// removed. The scene sees positions that are set here after the next step. Until `deform_seconds` have
-  /// passed, the simulation sets the external forces.
+  /// removed. The scene sees positions that are set here after the next step. While random forces act, the
+  /// simulation sets the external forces.
   MassSpringBody* body(ObjectId object);
   const MassSpringBody* body(ObjectId object) const;
 

@@ -117,12 +117,19 @@ struct Description<MassSpringMotion> {
                                   .unit = "m/s"});
     visitor(Field<Motion, double>{.name = "random_force",
                                   .member = &Motion::random_force,
-                                  .doc = "Root mean square of random forces that deform the object in place",
+                                  .doc = "Root mean square of random forces that deform the object",
                                   .range = ValueRange::from(0),
                                   .unit = "N"});
     visitor(Field<Motion, double>{.name = "deform_seconds",
                                   .member = &Motion::deform_seconds,
-                                  .doc = "Duration of the random forces; then the object gets its velocity",
+                                  .doc = "How long the object deforms in place; then constant random forces "
+                                         "end, and the object gets its velocity",
+                                  .range = ValueRange::from(0),
+                                  .unit = "s"});
+    visitor(Field<Motion, double>{.name = "force_change_seconds",
+                                  .member = &Motion::force_change_seconds,
+                                  .doc = "Time in which the random forces change into others; they act until "
+                                         "the end. 0: constant forces",
                                   .range = ValueRange::from(0),
                                   .unit = "s"});
     visitor(Field<Motion, std::optional<std::uint64_t>>{

@@ -322,8 +322,21 @@ void MassSpring::set_velocities(std::span<const Vec3d> velocities) {
 
 void MassSpring::set_external_forces(std::span<const Vec3d> forces) {
   if (!forces.empty()) check_size(forces.size(), "forces");
+  bool known = now_.accelerations_known && !forces.empty() && !external_forces_.empty();
+  // Forces that change in every step do not cost another evaluation of the springs.
+  for (std::size_t v = 0; known && v < kinds_.size(); ++v) {
+    if (kinds_[v] != VertexKind::free) continue;
+    now_.accelerations[v] = now_.accelerations[v] + (forces[v] - external_forces_[v]) * inverse_masses_[v];
+    known = is_finite(now_.accelerations[v]);
+  }
   external_forces_.assign(forces.begin(), forces.end());
-  now_.accelerations_known = false;
+  forget_accelerations();
+  now_.accelerations_known = known;
+}
+
+/// Also those of the state that `undo_step` restores, because forces and air stay.
+void MassSpring::forget_accelerations() {
+  for (State* const state : {&now_, &next_, &after_next_}) state->accelerations_known = false;
 }
 
 void MassSpring::add_drift(Vec3d velocity) {
@@ -331,7 +344,7 @@ void MassSpring::add_drift(Vec3d velocity) {
     if (kinds_[v] == VertexKind::free) now_.velocities[v] = now_.velocities[v] + velocity;
   }
   air_velocity_ = air_velocity_ + velocity;
-  now_.accelerations_known = false;
+  forget_accelerations();
 }
 
 void MassSpring::reflect(int axis) {
@@ -343,7 +356,7 @@ void MassSpring::reflect(int axis) {
     if (kinds_[v] == VertexKind::free) now_.velocities[v][axis] -= 2 * mean;
   }
   air_velocity_[axis] = -air_velocity_[axis];
-  now_.accelerations_known = false;
+  forget_accelerations();
 }
 
 }  // namespace supple

@@ -44,6 +44,7 @@ class MassSpring {
   double area() const;
   double volume() const;
   AreaError area_error() const;
+  EdgeStrain edge_strain() const;
   std::vector<MassSpringBody::Spring> springs() const;
 
  private:
@@ -58,6 +59,7 @@ class MassSpring {
   };
 
   void restore_rest_shape();
+  void forget_accelerations();
   void check_size(std::size_t size, const char* what) const;
   void carry_on(State& from, State& to, double seconds, const Parallel& parallel);
   void verlet(State& from, State& to, double seconds, const Parallel& parallel);

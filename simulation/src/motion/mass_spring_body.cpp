@@ -95,6 +95,10 @@ double MassSpringBody::volume() const {
 AreaError MassSpringBody::area_error() const {
   return implementation_->masses.area_error();
 }
+EdgeStrain MassSpringBody::edge_strain() const {
+  return implementation_->masses.edge_strain();
+}
+
 std::vector<MassSpringBody::Spring> MassSpringBody::springs() const {
   return implementation_->masses.springs();
 }

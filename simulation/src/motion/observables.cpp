@@ -117,6 +117,21 @@ AreaError MassSpring::area_error() const {
   return error;
 }
 
+EdgeStrain MassSpring::edge_strain() const {
+  EdgeStrain strain;
+  double count = 0;
+  for (const SpringElement& edge : network_.edges.elements) {
+    if (!(edge.rest_length > 0) || !std::isfinite(edge.rest_length)) continue;
+    const Vec3d along = now_.positions[edge.b] - now_.positions[edge.a];
+    const double relative = std::abs(std::sqrt(dot(along, along)) - edge.rest_length) / edge.rest_length;
+    strain.largest = std::max(strain.largest, relative);
+    strain.mean += relative;
+    ++count;
+  }
+  if (count > 0) strain.mean /= count;
+  return strain;
+}
+
 std::vector<MassSpringBody::Spring> MassSpring::springs() const {
   std::vector<MassSpringBody::Spring> springs;
   springs.reserve(network_.edges.elements.size());

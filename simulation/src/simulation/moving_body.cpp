@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "simulation/deforming_forces.hpp"
 #include "supple/simulation_descriptions.hpp"
 
 namespace supple {
@@ -62,10 +61,13 @@ MovingBody::MovingBody(MassSpringBody rest, const MassSpringMotion& motion, doub
       time_step_(time_step),
       drift_(motion.velocity + motion.random_speed * random.direction()),
       deform_seconds_(motion.deform_seconds),
+      forces_(body.positions(),
+              motion.random_force > 0 ? body.springs() : std::vector<MassSpringBody::Spring>{}, motion,
+              random),
       handles_(motion.handles) {
-  if (deform_seconds_ > 0 && motion.random_force > 0)
-    body.set_external_forces(deforming_forces(body.positions(), body.springs(), motion.random_force, random));
+  if (!forces_.change() && deform_seconds_ > 0) body.set_external_forces(forces_.constant());
   send_off_in_time();
+  change_forces();
   pull_handles();
 }
 
@@ -84,6 +86,7 @@ void MovingBody::end_step(const std::optional<Border>& border) {
   ++steps_;
   if (border) reflect_at(*border);
   send_off_in_time();
+  change_forces();
   pull_handles();
 }
 
@@ -123,10 +126,14 @@ void MovingBody::reflect_from_side(int axis, double outward, double velocity) {
 
 void MovingBody::send_off_in_time() {
   constexpr double rounding = 1e-12;
-  if (!is_deforming_ || seconds() < deform_seconds_ * (1 - rounding)) return;
-  is_deforming_ = false;
-  if (deform_seconds_ > 0) body.set_external_forces({});
+  if (!is_in_place_ || seconds() < deform_seconds_ * (1 - rounding)) return;
+  is_in_place_ = false;
+  if (deform_seconds_ > 0 && !forces_.change()) body.set_external_forces({});
   if (drift_ != Vec3d{}) body.add_drift(drift_);
+}
+
+void MovingBody::change_forces() {
+  if (forces_.change()) body.set_external_forces(forces_.at(seconds(), body.positions()));
 }
 
 /// Fixed vertices keep the velocity they are given. This sets the velocity that brings each to the position

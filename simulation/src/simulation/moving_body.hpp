@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "simulation/deforming_forces.hpp"
 #include "supple/motion.hpp"
 #include "supple/simulation.hpp"
 
@@ -34,13 +35,15 @@ class MovingBody {
   void reflect_at(const Border& border);
   void reflect_from_side(int axis, double outward, double velocity);
   void send_off_in_time();
+  void change_forces();
   void pull_handles();
 
   double time_step_;
   std::uint64_t steps_ = 0;
   Vec3d drift_;
   double deform_seconds_;
-  bool is_deforming_ = true;
+  bool is_in_place_ = true;
+  DeformingForces forces_;
   std::vector<MassSpringMotion::Handle> handles_;
   bool handles_rest_ = false;
   std::vector<Vec3d> positions_, velocities_;  // scratch memory

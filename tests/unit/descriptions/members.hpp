@@ -54,8 +54,8 @@ inline auto members_of(MassSpringMotion::Handle& o) {
   return std::tie(a, b, c);
 }
 inline auto members_of(MassSpringMotion& o) {
-  auto& [a, b, c, d, e, f, g] = o;
-  return std::tie(a, b, c, d, e, f, g);
+  auto& [a, b, c, d, e, f, g, h] = o;
+  return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto members_of(RigidMotion& o) {
   auto& [a, b, c, d, e] = o;
