@@ -9,6 +9,9 @@
 #include "base/exit_status.hpp"
 #include "base/interruption.hpp"
 #include "base/text.hpp"
+#include "program_2007/ablation.hpp"
+#include "program_2007/sensitivity.hpp"
+#include "program_2007/trials.hpp"
 #include "report.hpp"
 #include "studies/arity.hpp"
 #include "studies/claims.hpp"
@@ -37,6 +40,7 @@ Table1Options table1_options(const ExperimentOptions& options) {
   table1.runs = options.runs.value_or(table1.runs);
   table1.simulated_seconds = options.simulated_seconds.value_or(table1.simulated_seconds);
   if (options.wall_clock) table1.wall_clock = *options.wall_clock;
+  if (options.program_clock) table1.program_clock = *options.program_clock;
   table1.threads = options.threads;
   table1.seed = options.seed;
   return table1;
@@ -61,6 +65,23 @@ Report run(const ExperimentOptions& options) {
     claims.seed = options.seed;
     return run_claims(claims, !options.quiet);
   }
+  if (options.kind == ExperimentOptions::Kind::ablation) {
+    AblationOptions ablation = ablation_options(options.quick);
+    ablation.threads = options.threads.value_or(1);
+    ablation.seed = options.seed;
+    return run_ablation(ablation, !options.quiet);
+  }
+  if (options.kind == ExperimentOptions::Kind::trials) {
+    TrialOptions trials = trial_options(options.quick);
+    trials.seed = options.seed;
+    return run_trials(trials, !options.quiet);
+  }
+  if (options.kind == ExperimentOptions::Kind::sensitivity) {
+    SensitivityOptions sensitivity = sensitivity_options(options.quick);
+    sensitivity.threads = options.threads;
+    sensitivity.seed = options.seed;
+    return run_sensitivity(sensitivity, !options.quiet);
+  }
   ArityOptions arity = arity_options(options.quick);
   arity.threads = options.threads.value_or(1);
   arity.seed = options.seed;
@@ -82,6 +103,12 @@ const char* name_of(ExperimentOptions::Kind kind) {
       return "volumes";
     case Kind::claims:
       return "claims";
+    case Kind::ablation:
+      return "ablation";
+    case Kind::trials:
+      return "trials";
+    case Kind::sensitivity:
+      return "sensitivity";
   }
   return "";
 }

@@ -11,7 +11,7 @@ namespace supple::experiments {
 
 /// Options of `supple experiment`.
 struct ExperimentOptions {
-  enum class Kind { table1, scaling, arity, volumes, claims };
+  enum class Kind { table1, scaling, arity, volumes, claims, ablation, trials, sensitivity };
   Kind kind = Kind::table1;
   bool quick = false;
   bool quiet = false;
@@ -28,6 +28,7 @@ struct ExperimentOptions {
   std::optional<std::uint32_t> runs{};
   std::optional<std::uint32_t> simulated_seconds{};  ///< 0: no runs in simulated time
   std::optional<std::uint32_t> wall_clock{};         ///< seconds of detection per run; none: no such runs
+  std::optional<std::uint32_t> program_clock{};      ///< of detection and motion per run; none: no such runs
   bool resume = false;
 };
 

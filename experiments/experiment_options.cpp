@@ -32,6 +32,12 @@ constexpr const char* footer = R"(Examples:
       Compares boxes, spheres, oriented boxes and k-DOPs, and ways to build an octree.
   supple experiment claims
       Measures single claims of the paper: the cost of one test, the depth of octrees, stability.
+  supple experiment ablation
+      From the program of 2007 to the defaults of today, one choice at a time.
+  supple experiment trials
+      The methods that the paper tried and rejected.
+  supple experiment sensitivity
+      Whether other scenes, speeds or levels give the numbers of the paper. Takes an hour.
 
 Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the
 paper's claims hold. The page needs python3 with matplotlib. Without it, the tables are written and the exit
@@ -39,19 +45,21 @@ status is 2. docs/experiments.md describes the experiments.)";
 
 void add_kind(CLI::App& app, ExperimentOptions& options) {
   using Kind = ExperimentOptions::Kind;
-  const std::map<std::string, Kind> kinds{{"table1", Kind::table1},
-                                          {"scaling", Kind::scaling},
-                                          {"arity", Kind::arity},
-                                          {"volumes", Kind::volumes},
-                                          {"claims", Kind::claims}};
+  const std::map<std::string, Kind> kinds{{"table1", Kind::table1}, {"scaling", Kind::scaling},
+                                          {"arity", Kind::arity},   {"volumes", Kind::volumes},
+                                          {"claims", Kind::claims}, {"ablation", Kind::ablation},
+                                          {"trials", Kind::trials}, {"sensitivity", Kind::sensitivity}};
   const auto parse = [&options, kinds](const std::string& given) {
     const auto found = kinds.find(given);
     if (found == kinds.end())
-      throw CLI::ValidationError("experiment", "there is no experiment '" + given +
-                                                   "'; choose table1, scaling, arity, volumes or claims");
+      throw CLI::ValidationError(
+          "experiment",
+          "there is no experiment '" + given +
+              "'; choose table1, scaling, arity, volumes, claims, ablation, trials or sensitivity");
     options.kind = found->second;
   };
-  app.add_option_function<std::string>("table1|scaling|arity|volumes|claims", parse, "The experiment")
+  app.add_option_function<std::string>("table1|scaling|arity|volumes|claims|ablation|trials|sensitivity",
+                                       parse, "The experiment")
       ->required()
       ->type_name("");
 }
@@ -129,13 +137,26 @@ void add_table1(CLI::App& app, ExperimentOptions& options, cli::Dependences& dep
       cli::add_number(app, "--runs", options.runs, 1, 1000, "Number of runs per configuration (default: 5)"));
   table1_only(cli::add_number(app, "--seconds", options.simulated_seconds, 0, 1'000'000,
                               "Simulated seconds per run; 0 means no runs in simulated time (default: 600)"));
-  dependences.push_back(
-      {app.get_option("--seconds"),
-       [&options] { return options.simulated_seconds.value_or(1) > 0 || options.wall_clock.has_value(); },
-       "--wall-clock when it is 0"});
+  dependences.push_back({app.get_option("--seconds"),
+                         [&options] {
+                           return options.simulated_seconds.value_or(1) > 0 || options.wall_clock ||
+                                  options.program_clock;
+                         },
+                         "--wall-clock or --program-clock when it is 0"});
   table1_only(cli::add_number(app, "--wall-clock", options.wall_clock, 1, 1'000'000,
                               "Also count the collisions that this many seconds of detection find in each "
                               "run; the time of the motion does not count"));
+  table1_only(
+      cli::add_number(app, "--program-clock", options.program_clock, 1, 1'000'000,
+                      "Also count the collisions that the whole program finds in this many seconds of "
+                      "detection and motion in each run"));
+  CLI::Option* const fused = cli::add_words(
+      app, "--fused-refit", {"off", "on"},
+      [&options](std::size_t place) { options.method.fused_refit = place == 1; },
+      "The loop of the motion finds the bounds of the bodies, instead of a loop of the refit (default: on)");
+  table1_only(fused);
+  dependences.push_back(
+      {fused, [&options] { return options.method.scene.comparison.lazy_refit; }, "--lazy-refit on"});
   table1_only(app.add_flag("--resume", options.resume,
                            "Go on with the experiment in the output folder; its complete runs are not "
                            "repeated"));
@@ -153,8 +174,11 @@ void add_options(CLI::App& app, ExperimentOptions& options, cli::Dependences& de
                   "Worker threads (default: 1); for table1 also the number of parallel runs in simulated "
                   "time (default: one per core); 0 means one per core");
   dependences.push_back({app.get_option("--threads"),
-                         [&options] { return options.kind != ExperimentOptions::Kind::claims; },
-                         "another experiment than claims, which has one thread"});
+                         [&options] {
+                           return options.kind != ExperimentOptions::Kind::claims &&
+                                  options.kind != ExperimentOptions::Kind::trials;
+                         },
+                         "another experiment than claims and trials, which have one thread"});
   cli::add_number(app, "--seed", options.seed, 0, 1'000'000'000, "Seed of the random numbers (default: 1)");
   add_table1(app, options, dependences);
   app.add_flag("--quiet", options.quiet, "Print no tables and no progress");

@@ -31,6 +31,17 @@ std::string described(const Growth& growth) {
 
 }  // namespace
 
+Verdict below(const Estimate& quantity, double limit) {
+  if (quantity.mean + 2 * quantity.error < limit) return Verdict::holds;
+  return quantity.mean - 2 * quantity.error > limit ? Verdict::does_not_hold : Verdict::cannot_tell;
+}
+
+Estimate ratio_of(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) ratios.push_back(a[i] / b[i]);
+  return estimate_of(ratios);
+}
+
 Verdict both(Verdict a, Verdict b) {
   if (a == Verdict::does_not_hold || b == Verdict::does_not_hold) return Verdict::does_not_hold;
   return a == Verdict::cannot_tell ? a : b;

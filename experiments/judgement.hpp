@@ -27,6 +27,12 @@ inline constexpr double exponent_tolerance = 0.1;
 /// and fixed costs affect times.
 inline constexpr double time_tolerance = 0.25;
 
+/// Whether a quantity is below a limit by more than two standard errors: `holds`; above: `does_not_hold`;
+/// `cannot_tell` within them or without an error.
+Verdict below(const Estimate& quantity, double limit);
+/// The ratios a[i] / b[i] of times that were measured in turn.
+Estimate ratio_of(const std::vector<double>& a, const std::vector<double>& b);
+
 /// `does_not_hold` if one of the two is, otherwise `cannot_tell` if one of the two is.
 Verdict both(Verdict a, Verdict b);
 

@@ -56,9 +56,27 @@ void write_report(const Report& report, const fs::path& folder) {
   Json json{{"name", report.name}, {"title", report.title}, {"summary", report.summary}};
   for (const auto& [name, value] : report.parameters) json["parameters"][name] = value;
   for (const auto& [name, value] : describe_machine()) json["machine"][name] = value;
-  for (const Claim& claim : report.claims)
+  json["claims"] = Json::array();
+  Table claims{report.name + "_claims",
+               "",
+               {{"claim", "Claim"},
+                {"verdict", "Verdict"},
+                {"number", "Number"},
+                {"error", "Standard error"},
+                {"reason", "Reason"}}};
+  for (const Claim& claim : report.claims) {
     json["claims"].push_back(
         {{"paper", claim.paper}, {"verdict", name_of(claim.verdict)}, {"reason", claim.reason}});
+    std::string verdict = name_of(claim.verdict);
+    verdict.resize(verdict.size() - 2);  // without the full stop and the space
+    std::vector<Cell> row{claim.paper, std::move(verdict), Cell(), Cell(), claim.reason};
+    if (claim.number) {
+      row[2] = claim.number->mean;
+      row[3] = claim.number->error;
+    }
+    claims.add(std::move(row));
+  }
+  if (!report.claims.empty()) write_file(folder / (claims.name + ".csv"), csv_head() + csv_of(claims));
   for (const Section& section : report.sections) {
     Json tables = Json::array();
     for (const Table& table : section.tables) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "fit.hpp"
 #include "table.hpp"
 
 namespace supple::experiments {
@@ -16,6 +18,8 @@ struct Claim {
   std::string paper;  ///< the claim and its section of the paper
   Verdict verdict = Verdict::cannot_tell;
   std::string reason;  ///< with the measured numbers
+  /// The number that decides, and its standard error, where there is one number.
+  std::optional<Estimate> number{};
 };
 
 /// The page has plots of some tables between the paragraphs and the tables.
@@ -44,8 +48,8 @@ std::string text_of(const Report& report);
 /// Creates a folder if necessary. Throws `Error` when that fails.
 void make_folder(const std::filesystem::path& folder);
 void write_file(const std::filesystem::path& path, const std::string& text);
-/// Writes one CSV file per table, and everything else of the report as JSON, into the folder, which is
-/// created if necessary.
+/// Writes one CSV file per table, one for the claims (NAME_claims.csv), and everything else of the report as
+/// JSON, into the folder, which is created if necessary.
 void write_report(const Report& report, const std::filesystem::path& folder);
 /// Makes the page of the files of a report: calls report.py, which is beside the program. Returns the exit
 /// status of the program. Throws `Error` without Python.

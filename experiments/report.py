@@ -242,6 +242,42 @@ def volumes_plots(rows):
                         lambda row: float(row["refit_ms"]) + float(row["query_ms"]), logarithmic=True)
 
 
+STAGES = (("refit", "refit_ms"), ("broad phase", "broad_ms"), ("narrow phase", "narrow_ms"), ("exact stage", "exact_ms"))
+
+
+def ablation_plots(rows):
+    """The stages of a step, from the program of 2007 down to the defaults."""
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        bars = [(row["change"], [(stage, color, float(row[key])) for (stage, key), color in zip(STAGES, COLORS)])
+                for row in rows if row["scene"] == scene]
+        yield bar_plot(f"{scene}: one choice at a time", "milliseconds of a step", bars)
+
+
+def trials_plots(rows):
+    yield relative_plot("Time of a step", rows, "scene", "trial", "the hierarchy", lambda row: float(row["ms"]), logarithmic=True)
+
+
+def sensitivity_plots(rows):
+    """The ratios in the broad phase by the clock of the program, and those of the paper."""
+    chosen = [row for row in rows if row["phase"] == "broad" and row["clock"] == "whole program"]
+    groups = {f"{n} objects": [(place, float(row[f"ratio_{n}"]), float(row[f"ratio_{n}_error"] or 0))
+                               for place, row in enumerate(chosen) if row[f"ratio_{n}"]] for n in (3, 6, 9)}
+    yield point_plot("Spheres for each box, whole program, broad phase (the paper: 0.50, 0.82, 0.91)", "setting",
+                     "ratio of collisions", [row["setting"] for row in chosen], {n: p for n, p in groups.items() if p}, True)
+
+
+def clocks_plots(rows):
+    """The ratio by each clock and in the paper, with standard errors."""
+    clocks = (("simulated", "simulated time"), ("detection", "detection alone"), ("program", "whole program"), ("paper", "the paper"))
+    for phase in ("broad", "narrow"):
+        chosen = [row for row in rows if row["phase"] == phase]
+        groups = {name: points for clock, name in clocks if (points := [
+            (place, float(row[clock]), float(row[f"{clock}_error"] or 0)) for place, row in enumerate(chosen) if row[clock]])}
+        if groups:
+            yield point_plot(f"Spheres for each box, {phase} phase", "scene", "ratio of collisions", [row["scene"] for row in chosen],
+                             groups, True)
+
+
 def table1_plots(rows, means, seconds, suffix):
     """Our runs as points, and the paper's means with their standard errors, for each number of objects."""
     first_edges = {row["scene"]: row["edge"] for row in reversed(rows)}
@@ -275,7 +311,11 @@ def plots_of(folder, name, parameters):
     if name == "table1_clock_runs":
         return table1_plots(rows_of(folder, name), rows_of(folder, "table1_clock_means"),
                             float(parameters["--wall-clock"]), ", by the clock")
-    plots = {"scaling_broad_phase": broad_phase_plots, "scaling_vertices": vertices_plots, "arity_objects": arity_plots,
+    if name == "table1_program_runs":
+        return table1_plots(rows_of(folder, name), rows_of(folder, "table1_program_means"),
+                            float(parameters["--program-clock"]), ", by the clock of the program")
+    plots = {"ablation": ablation_plots, "trials": trials_plots, "sensitivity": sensitivity_plots, "table1_clocks": clocks_plots,
+             "scaling_broad_phase": broad_phase_plots, "scaling_vertices": vertices_plots, "arity_objects": arity_plots,
              "volumes": volumes_plots, "volumes_builds": volumes_plots}
     return plots[name](rows_of(folder, name)) if name in plots else ()
 

@@ -37,6 +37,11 @@ std::string csv_field(const Cell& cell) {
 
 }  // namespace
 
+Cell cell_of(double number) {
+  if (std::isnan(number)) return {};
+  return number;
+}
+
 void Table::add(std::vector<Cell> row) {
   if (row.size() != columns.size())
     throw Error(fmt::format("table {}: a row of {} cells for {} columns", name, row.size(), columns.size()));

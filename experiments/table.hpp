@@ -12,6 +12,9 @@ namespace supple::experiments {
 /// The value of a cell: nothing, a word, a count or a measured number.
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
+/// A measured number; nothing for NaN.
+Cell cell_of(double number);
+
 struct Column {
   std::string name;     ///< in the CSV file: lower_case, with the unit
   std::string heading;  ///< on the terminal and in the report

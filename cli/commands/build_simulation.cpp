@@ -70,7 +70,9 @@ struct Adder {
 void apply(const MethodOptions& options, Input& input) {
   input.simulation.scene = options.scene;
   input.simulation.scene.contacts = with_included(options.scene.contacts);
+  input.simulation.fused_refit = options.fused_refit.value_or(false);
   for (InputObject& object : input.objects) {
+    if (options.as_2007) object.options.octree = octree_of_2007();
     options.given_objects.apply_to(object.options);
     object.splits = object.splits || options.parts;
   }

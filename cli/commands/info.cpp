@@ -173,6 +173,7 @@ int run_info(const InfoOptions& options) {
   Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
   print_notes(input);
   for (InputObject& object : input.objects) {
+    if (options.as_2007) object.options.octree = octree_of_2007();
     options.given_objects.apply_to(object.options);
     object.splits = object.splits || options.parts;
   }

@@ -9,6 +9,7 @@
 #include "options/option_needs.hpp"
 #include "session/settings.hpp"
 #include "supple/format_descriptions.hpp"
+#include "supple/simulation_descriptions.hpp"
 
 namespace supple::cli {
 namespace {
@@ -125,9 +126,10 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
   options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                                      const Value& default_value, auto set) {
     if (of_page && !viewer::is_setting(field) && !field.is_of_machine) return;
-    const bool is_method = std::is_same_v<Struct, SceneOctreeOptions> ||
-                           std::is_same_v<Value, BoundingVolume> || std::is_same_v<Value, SphereFit> ||
-                           std::is_same_v<Value, BroadPhaseMethod>;
+    const bool is_method =
+        std::is_same_v<Struct, SceneOctreeOptions> ||
+        (std::is_same_v<Struct, ComparisonOptions> && field.key != std::string_view("colliding_vertices")) ||
+        std::is_same_v<Value, BoundingVolume> || std::is_same_v<Value, BroadPhaseMethod>;
     CLI::Option* option = nullptr;
     if constexpr (std::is_same_v<Value, std::optional<RootCube>>)
       option = add_root(app, field.key, options.root_is_border, set);
@@ -140,6 +142,14 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
                                flag_of(need.decider) + " " + need.values});
     }
   });
+  dependences.push_back(
+      {app.add_flag(
+              "--as-2007", options.as_2007,
+              "Run the method of the paper's program: the scene octree of Figure 2 with regions down to "
+              "level 2, regular octrees of single triangles, the descent of Figure 4, fused and lazy "
+              "refit, and the colliding vertices. Other options change parts of it")
+           ->group("Method"),
+       [&options] { return is_at_rest(options.scene); }, "--contacts intersection or none"});
   add_object_options(app, options.given_objects, true);
   add_parts(app, options.parts, "Detection");
   dependences.push_back({app.get_option("--margin"), [&options] { return has_proximity(options.scene); },
@@ -148,6 +158,16 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
                          [&options] { return has_intersections(options.scene); }, "--contacts intersection"});
   dependences.push_back({app.get_option("--solid"), [&options] { return has_penetration(options.scene); },
                          "--contacts penetration"});
+}
+
+void add_fused_refit(CLI::App& app, MethodOptions& options, Dependences& dependences) {
+  for_each_field<SimulationOptions>([&]<class Struct, class Value>(const Field<Struct, Value>& field) {
+    if constexpr (std::is_same_v<Value, bool>) {
+      const auto set = [&options](bool fused) { options.fused_refit = fused; };
+      dependences.push_back({add_field(app, field, false, set)->group("Method"),
+                             [&options] { return options.scene.comparison.lazy_refit; }, "--lazy-refit on"});
+    }
+  });
 }
 
 void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {

@@ -29,6 +29,8 @@ void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& se
 /// Adds every option of the detection. A page has a layer instead of `--colliding-vertices`.
 void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences,
                            bool of_page = false);
+/// For commands whose scenes have masses and springs.
+void add_fused_refit(CLI::App& app, MethodOptions& options, Dependences& dependences);
 void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences);
 void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& dependences);
 

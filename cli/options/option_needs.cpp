@@ -5,14 +5,17 @@
 namespace supple::cli {
 namespace {
 
-/// Whether the scene looks at triangles at rest. Otherwise it searches elements, with boxes.
-bool is_at_rest(const SceneOptions& scene) {
-  return scene.contacts == ContactKinds::none || has_intersections(scene);
+bool only_intersections(const SceneOptions& scene) {
+  return scene.contacts == ContactKinds::none || scene.contacts == ContactKinds::intersection;
 }
 
 /// Oriented boxes and k-DOPs enclose objects at rest, not their paths.
 constexpr bool is_of_positions(BoundingVolume volume) {
   return volume != BoundingVolume::aabb && volume != BoundingVolume::sphere;
+}
+
+bool has_boxes_or_spheres(const SceneOptions& scene) {
+  return !is_of_positions(scene.bounding_volume);
 }
 
 constexpr const char* methods = "octree or automatic";
@@ -29,6 +32,8 @@ constexpr OptionNeed needs[] = {
     {"region_test", has_scene_octree, "broad_phase", methods},
     {"scene_octree_max_level", has_scene_octree, "broad_phase", methods},
     {"scene_octree_expand_at", has_scene_octree, "broad_phase", methods},
+    {"scene_octree_expand_for_large", has_scene_octree, "broad_phase", methods},
+    {"scene_octree_min_level", has_scene_octree, "broad_phase", methods},
     {"scene_octree_arity", has_scene_octree, "broad_phase", methods},
     {"scene_octree_root", has_scene_octree, "broad_phase", methods},
     {"min_separation", has_continuous, "contacts", "continuous"},
@@ -44,9 +49,17 @@ constexpr OptionNeed needs[] = {
      "contacts", "penetration or proximity"},
     {"contact_points", has_intersections, "contacts", "intersection"},
     {"colliding_vertices", is_at_rest, "contacts", kinds_at_rest},
+    {"descent", is_at_rest, "contacts", kinds_at_rest},
+    {"descent", has_boxes_or_spheres, "bounding_volume", "aabb or sphere"},
+    {"lazy_refit", only_intersections, "contacts", kinds_at_rest},
+    {"lazy_refit", has_boxes_or_spheres, "bounding_volume", "aabb or sphere"},
 };
 
 }  // namespace
+
+bool is_at_rest(const SceneOptions& scene) {
+  return scene.contacts == ContactKinds::none || has_intersections(scene);
+}
 
 bool has_intersections(const SceneOptions& scene) {
   return contains(with_included(scene.contacts), ContactKinds::intersection);

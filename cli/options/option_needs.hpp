@@ -17,6 +17,8 @@ struct OptionNeed {
 /// The command line and scene files refuse an option that is given and has no effect.
 std::span<const OptionNeed> option_needs();
 
+/// Whether the scene looks at triangles at rest. Otherwise it searches elements, with boxes.
+bool is_at_rest(const SceneOptions& scene);
 /// Whether the regions of the scene octree may be used.
 bool has_scene_octree(const SceneOptions& scene);
 bool has_intersections(const SceneOptions& scene);

@@ -115,6 +115,7 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
   app->footer(simulate_footer);
   add_simulation_options(*app, options);
   add_detection_options(*app, options, dependences);
+  add_fused_refit(*app, options, dependences);
   add_report_options(*app, options, dependences);
   add_time_limit(*app, options.limits)->group("Detection");
   app->add_option("--record", options.record,
@@ -136,6 +137,7 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
       ->group("Input");
   add_scene_overrides(*app, options.seed, options.time_step);
   add_detection_options(*app, options, dependences, true);
+  add_fused_refit(*app, options, dependences);
 
   const auto group = [](CLI::Option* option) { return option->group("Page"); };
   const auto is_served = [&] { return options.page_file.empty(); };
@@ -189,6 +191,7 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
           {add_field(*app, field, default_value, set), has_spheres_given, "--bounding-volume sphere"});
     }
   });
+  app->add_flag("--as-2007", options.as_2007, "The paper's octrees: regular, down to single triangles");
   add_object_options(*app, options.given_objects, false);
   add_weld(*app, options.given_objects);
   add_parts(*app, options.parts, "Options");
@@ -313,11 +316,17 @@ void add_diff(CLI::App& program, DiffOptions& options) {
 void resolve(MethodOptions& options, const std::vector<std::string>& inputs) {
   const SimulationOptions input = options_of(inputs);
   options.scene = input.scene;
+  if (!options.fused_refit) options.fused_refit = options.as_2007 || input.fused_refit;
+  if (options.as_2007) {
+    options.scene = with_method_of_2007(options.scene);
+    if (input.border) options.scene.scene_octree.root = cube_around((*input.border)[0], (*input.border)[1]);
+  }
   SceneOptions chosen = options.scene;
   options.given_scene.apply_to(chosen);
   // Options of the scene octree in the input apply only to the method in the input.
   if (!has_scene_octree(chosen)) options.scene.scene_octree = {};
   options.given_scene.apply_to(options.scene);
+  if (!options.scene.comparison.lazy_refit) options.fused_refit = false;
   if (!options.root_is_border) return;
   if (!input.border)
     throw CLI::ValidationError("--scene-octree-root", "border: only a scene file with bounds has a border");

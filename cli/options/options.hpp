@@ -35,8 +35,10 @@ namespace supple::cli {
 
 /// The method that finds contacts.
 struct MethodOptions {
-  SceneOptions scene;           ///< the options of the input or the defaults, replaced by the given options
-  bool root_is_border = false;  ///< the root of the scene octree is given as the border of the scene
+  SceneOptions scene;    ///< the options of the input or the defaults, replaced by the given options
+  bool as_2007 = false;  ///< the method of the paper's program, which given options change
+  std::optional<bool> fused_refit{};  ///< as given; after all options were read, what applies
+  bool root_is_border = false;        ///< the root of the scene octree is given as the border of the scene
   viewer::Overrides<SceneOptions> given_scene;
   viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
   bool parts = false;                              ///< each connected part is an object
@@ -96,7 +98,8 @@ struct InfoOptions {
   CoordinateConversion conversion;
   viewer::Overrides<SceneOptions> given_scene;  ///< only the bounding volume
   viewer::Overrides<ObjectOptions> given_objects;
-  bool parts = false;  ///< each connected part is an object
+  bool as_2007 = false;  ///< octrees of the paper's program, which given options change
+  bool parts = false;    ///< each connected part is an object
   std::string json;
 };
 

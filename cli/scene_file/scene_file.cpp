@@ -30,6 +30,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The methods of `method`: the options of each key, or the paper's program.
+constexpr std::array words_of_method{"default", "2007"};
+
 std::string read_toml(const fs::path& path) {
   std::string text = read_text(path, most_toml_bytes + 1);
   if (text.size() > most_toml_bytes)
@@ -179,8 +182,8 @@ Placement read_placement(TomlReader& reader) {
   return placement;
 }
 
-ObjectOptions read_options(TomlReader& reader) {
-  ObjectOptions options;
+ObjectOptions read_options(TomlReader& reader, const ObjectOctreeOptions& octree) {
+  ObjectOptions options{.octree = octree};
   reader.read_options(options);
   return options;
 }
@@ -224,17 +227,23 @@ Copies read_copies(TomlReader& reader) {
   return copies;
 }
 
-void read_objects(const toml::table& table, const fs::path& path, const std::string& where, Vec3d gravity,
-                  TriangleBudget& budget, Shapes& shapes, Input& input) {
+/// What `[scene]` decides for all objects.
+struct ObjectDefaults {
+  Vec3d gravity;  ///< of masses and springs
+  ObjectOctreeOptions octree;
+};
+
+void read_objects(const toml::table& table, const fs::path& path, const std::string& where,
+                  const ObjectDefaults& defaults, TriangleBudget& budget, Shapes& shapes, Input& input) {
   TomlReader reader(path, table, where);
-  ObjectOptions options = read_options(reader);
+  ObjectOptions options = read_options(reader, defaults.octree);
   if (input.simulation.response)
     options.margin = std::max(options.margin, least_margin(*input.simulation.response));
   const Placement placement = read_placement(reader);
   const Copies copies = read_copies(reader);
   CoordinateConversion conversion;
   reader.read_options(conversion);
-  SceneMotion motion(reader, path, where, gravity, conversion);
+  SceneMotion motion(reader, path, where, defaults.gravity, conversion);
   if (!motion.empty() && options.is_static)
     reader.fail("motion", "a static object does not move; leave out motion or static");
   bool parts = false;
@@ -298,22 +307,32 @@ void read_detection(TomlReader& reader, const std::optional<Border>& border, Sce
   }
 }
 
-/// Returns the gravity of masses and springs.
-Vec3d read_scene(const toml::table& table, const fs::path& path, SimulationOptions& simulation) {
+ObjectDefaults read_scene(const toml::table& table, const fs::path& path, SimulationOptions& simulation) {
   TomlReader reader(path, table, "[scene]");
+  ObjectDefaults defaults;
   if (reader.has("bounds")) reader.read_box("bounds", simulation.border.emplace(), false);
+  const bool as_2007 = reader.read_word("method", words_of_method) == std::size_t{1};
+  if (as_2007) {
+    defaults.octree = octree_of_2007();
+    simulation.scene = with_method_of_2007(simulation.scene);
+    const std::optional<Border>& border = simulation.border;
+    if (border) simulation.scene.scene_octree.root = cube_around((*border)[0], (*border)[1]);
+    simulation.fused_refit = true;
+  }
   for_each_field<SimulationOptions>([&](const auto& field) {
     using Value = std::remove_cvref_t<decltype(simulation.*field.member)>;
     if constexpr (!Described<Value> && !std::is_same_v<Value, std::optional<ContactResponse>>)
       reader.read(field, simulation.*field.member);
   });
   read_detection(reader, simulation.border, simulation.scene);
-  Vec3d gravity;
-  reader.read("gravity", gravity);
+  if (as_2007 && !is_at_rest(simulation.scene))
+    reader.fail("method", "2007 finds intersections; add them to contacts, or leave out method");
+  if (!reader.has("fused_refit") && !simulation.scene.comparison.lazy_refit) simulation.fused_refit = false;
+  reader.read("gravity", defaults.gravity);
   if (const toml::table* response = reader.table("response"))
     simulation.response = read_response(*response, path);
   reader.finish();
-  return gravity;
+  return defaults;
 }
 
 }  // namespace
@@ -335,8 +354,8 @@ Input read_scene_text(std::string text, const fs::path& path, const SceneOverrid
   input.scene_text = std::move(text);
   const toml::table file = parse_toml(input.scene_text, path);
   TomlReader reader(path, file, "scene file");
-  Vec3d gravity;
-  if (const toml::table* scene = reader.table("scene")) gravity = read_scene(*scene, path, input.simulation);
+  ObjectDefaults defaults;
+  if (const toml::table* scene = reader.table("scene")) defaults = read_scene(*scene, path, input.simulation);
   const std::vector<const toml::table*> objects = reader.tables("object", "[[object]]");
   reader.finish();
   input.simulation.seed = overrides.seed.value_or(input.simulation.seed);
@@ -344,7 +363,7 @@ Input read_scene_text(std::string text, const fs::path& path, const SceneOverrid
   Shapes shapes;
   TriangleBudget budget(overrides.most_triangles);
   for (std::size_t i = 0; i < objects.size(); ++i)
-    read_objects(*objects[i], path, fmt::format("[[object]] {}", i), gravity, budget, shapes, input);
+    read_objects(*objects[i], path, fmt::format("[[object]] {}", i), defaults, budget, shapes, input);
   input.files.push_back(path);
   for (const auto& [name, shape] : shapes.meshes) input.files.emplace_back(name);
   for (const InputObject& object : input.objects) {

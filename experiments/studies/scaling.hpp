@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "program_2007/few_objects.hpp"
 #include "report.hpp"
 #include "work.hpp"
 
@@ -11,6 +12,7 @@ namespace supple::experiments {
 
 struct ScalingOptions {
   std::vector<std::size_t> object_counts;  ///< ascending
+  FewObjectsOptions few_objects;
   std::vector<std::uint32_t> frequencies;  ///< of icospheres, ascending: 20 f² triangles
   double brute_seconds = 5;                ///< brute force skips steps that would take longer
   int frames = 5;                          ///< in motion, ≥ 1; the fastest counts

@@ -11,13 +11,12 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "commands/build_simulation.hpp"
+#include "program_2007/replay.hpp"
 #include "studies/shape_pair.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
-#include "table1/table1_scenes.hpp"
 #include "work.hpp"
 
 namespace supple::experiments {
@@ -39,27 +38,11 @@ Case poses_of(const std::string& name, const TriangleMesh& a, const TriangleMesh
   return result;
 }
 
-/// Every tenth step of a built-in scene, from the first step after a second in which triangles of different
-/// objects are near each other.
+/// Every tenth step of a scene.
 Case deforming(const Table1Scene& scene, const VolumesOptions& options) {
-  constexpr int steps_per_frame = 10;
-  cli::Input input = read_scene(scene, std::nullopt, options.seed);
-  input.simulation.scene.contacts = ContactKinds::none;
-  Simulation simulation = cli::build_simulation(input);
-  Case result{scene.name + ", deforming", {}};
-  for (const cli::InputObject& object : input.objects) result.objects.push_back(object.mesh);
-  constexpr double latest_start = 60;
-  const auto is_near = [&] { return simulation.scene().result().stats.candidate_pairs > 0; };
-  while (simulation.time() < 1 || (!is_near() && simulation.time() < latest_start)) simulation.step();
-  for (int frame = 0; frame < options.deformed_frames; ++frame) {
-    for (int step = 0; step < steps_per_frame; ++step) simulation.step();
-    auto& positions = result.frames.emplace_back();
-    for (const ObjectId id : simulation.scene().objects()) {
-      auto& of_object = positions.emplace_back(result.objects[id.index].positions.size());
-      for (std::uint32_t vertex = 0; vertex < of_object.size(); ++vertex)
-        of_object[vertex] = simulation.scene().position(id, vertex);
-    }
-  }
+  Replay replay = replay_of(scene, options.seed, options.deformed_frames, 10);
+  Case result{replay.name + ", deforming", std::move(replay.objects)};
+  for (Replay::Frame& frame : replay.frames) result.frames.push_back(std::move(frame.positions));
   return result;
 }
 

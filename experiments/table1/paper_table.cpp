@@ -38,6 +38,18 @@ const PaperRow* paper_row(std::uint32_t objects, BoundingVolume volume) {
   return found == rows.end() ? nullptr : &*found;
 }
 
+std::optional<Estimate> paper_ratio(std::uint64_t objects, bool is_broad) {
+  const auto number = static_cast<std::uint32_t>(objects);
+  const PaperRow *const boxes = paper_row(number, BoundingVolume::aabb), *const spheres = paper_row(
+                                                                             number, BoundingVolume::sphere);
+  if (boxes == nullptr || spheres == nullptr) return std::nullopt;
+  const auto of_phase = [&](const PaperRow& row) { return estimate_of(is_broad ? row.broad : row.narrow); };
+  const Estimate of_boxes = of_phase(*boxes), of_spheres = of_phase(*spheres);
+  const double ratio = of_spheres.mean / of_boxes.mean;
+  return Estimate{ratio,
+                  ratio * std::hypot(of_boxes.error / of_boxes.mean, of_spheres.error / of_spheres.mean)};
+}
+
 double mean(std::span<const double> values) {
   double sum = 0;
   for (const double value : values) sum += value;

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "fit.hpp"
 #include "supple/options.hpp"
 #include "table.hpp"
 
@@ -21,6 +23,10 @@ struct PaperRow {
 std::span<const PaperRow> paper_rows();
 /// Null when the paper has no such row.
 const PaperRow* paper_row(std::uint32_t objects, BoundingVolume volume);
+
+/// The ratio of the mean numbers with spheres and with boxes; the runs are independent of each other. Nothing
+/// when the paper has no such rows.
+std::optional<Estimate> paper_ratio(std::uint64_t objects, bool is_broad);
 
 double mean(std::span<const double> values);
 /// Ten minutes divided by the mean number.

@@ -88,17 +88,19 @@ Claim judge_more_with_boxes(const std::vector<Both>& scenes) {
                       "only the volumes. A larger volume meets others more often, but it also touches them "
                       "longer, so two collisions can become one.",
                       ratios_text(scenes, &RunCounts::broad), text_of(broad),
-                      ratios_text(scenes, &RunCounts::narrow))};
+                      ratios_text(scenes, &RunCounts::narrow)),
+          broad};
 }
 
-Claim judge_clock(const std::vector<Both>& scenes) {
+Claim judge_clock(const std::vector<Both>& scenes, const char* what) {
   const Estimate broad = sphere_ratio(scenes, &RunCounts::broad);
-  return {"By the clock, as the paper counts: boxes allow more collisions than spheres (7).",
+  return {fmt::format("By the clock of {}: boxes allow more collisions than spheres (7).", what),
           more_with_boxes(broad),
-          fmt::format("In the same time of detection, spheres begin {} times as many collisions as boxes in "
+          fmt::format("In the same time of {}, spheres begin {} times as many collisions as boxes in "
                       "the broad phase, {} in the narrow phase, and take {} times as many steps.",
-                      ratios_text(scenes, &RunCounts::broad), ratios_text(scenes, &RunCounts::narrow),
-                      ratios_text(scenes, &RunCounts::steps))};
+                      what, ratios_text(scenes, &RunCounts::broad), ratios_text(scenes, &RunCounts::narrow),
+                      ratios_text(scenes, &RunCounts::steps)),
+          broad};
 }
 
 Claim judge_proof_of_cost(const std::vector<Both>& scenes) {
@@ -331,19 +333,60 @@ Claim judge_paper_arithmetic() {
 
 }  // namespace
 
-std::vector<Claim> judge_table1(const std::vector<Runs>& steps, const std::vector<Runs>& clock) {
+Table clocks_table(const std::vector<Runs>& steps, const std::vector<Runs>& clock,
+                   const std::vector<Runs>& program) {
+  Table table{"table1_clocks",
+              "Collisions with spheres for each collision with boxes, by each clock, and in the paper",
+              {{"scene", "Scene"},
+               {"phase", "Phase"},
+               {"simulated", "Simulated time"},
+               {"simulated_error", "± error", 2},
+               {"detection", "Detection alone"},
+               {"detection_error", "± error", 2},
+               {"program", "Whole program"},
+               {"program_error", "± error", 2},
+               {"paper", "The paper"},
+               {"paper_error", "± error", 2}}};
+  const std::vector<Runs>& first = !steps.empty() ? steps : !clock.empty() ? clock : program;
+  for (const Both& both_runs : with_both(first)) {
+    const std::string& scene = both_runs.boxes->scene.name;
+    for (const bool is_broad : {true, false}) {
+      const Member member = is_broad ? &RunCounts::broad : &RunCounts::narrow;
+      std::vector<Cell> row{scene, std::string(is_broad ? "broad" : "narrow")};
+      const auto add = [&](const Estimate& ratio) {
+        row.push_back(cell_of(ratio.mean));
+        row.push_back(cell_of(ratio.error));
+      };
+      for (const std::vector<Runs>* const all : {&steps, &clock, &program}) {
+        std::vector<Both> of_scene = with_both(*all);
+        std::erase_if(of_scene, [&](const Both& other) { return other.boxes->scene.name != scene; });
+        add(sphere_ratio(of_scene, member));
+      }
+      const auto of_paper =
+          is_of_table(*both_runs.boxes) ? paper_ratio(both_runs.boxes->objects, is_broad) : std::nullopt;
+      add(of_paper.value_or(estimate_of({})));
+      table.add(std::move(row));
+    }
+  }
+  return table;
+}
+
+std::vector<Claim> judge_table1(const std::vector<Runs>& steps, const std::vector<Runs>& clock,
+                                const std::vector<Runs>& program) {
   std::vector<Claim> claims;
   const auto add = [&](std::optional<Claim> claim) {
     if (claim) claims.push_back(std::move(*claim));
   };
-  const std::vector<Both> by_steps = with_both(steps), by_clock = with_both(clock);
+  const std::vector<Both> by_steps = with_both(steps), by_clock = with_both(clock),
+                          by_program = with_both(program);
   if (!of_table(by_steps).empty()) add(judge_more_with_boxes(of_table(by_steps)));
-  if (!of_table(by_clock).empty()) add(judge_clock(of_table(by_clock)));
+  if (!of_table(by_clock).empty()) add(judge_clock(of_table(by_clock), "detection"));
+  if (!of_table(by_program).empty()) add(judge_clock(of_table(by_program), "detection and motion"));
   if (!by_steps.empty()) add(judge_proof_of_cost(by_steps));
   if (!steps.empty()) add(judge_narrow_is_fewer(steps));
   // Both ways of counting can decide the other claims; simulated time does not depend on the machine.
-  const std::vector<Runs>& all = steps.empty() ? clock : steps;
-  const std::vector<Both>& scenes = steps.empty() ? by_clock : by_steps;
+  const std::vector<Runs>& all = !steps.empty() ? steps : !clock.empty() ? clock : program;
+  const std::vector<Both> scenes = with_both(all);
   const std::size_t first = claims.size();
   add(judge_ratio_tends_to_one(of_table(scenes)));
   add(judge_convergence(of_table(scenes)));

@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Table empty_table(bool by_clock) {
-  Table table{by_clock ? "table1_clock_runs" : "table1_runs",
+Table empty_table(RunClock clock) {
+  Table table{name_of(clock) + "_runs",
               "Every run",
               {{"scene", "Scene"},
                {"edge", "Edge"},
@@ -26,17 +26,22 @@ Table empty_table(bool by_clock) {
   const auto add = [&](const char* name, const char* heading) {
     table.columns.push_back({name, heading, 4});
   };
-  if (!by_clock) add("exact", "Exact");
+  if (clock == RunClock::simulated) add("exact", "Exact");
   add("steps", "Steps");
-  if (by_clock) {
+  if (clock != RunClock::simulated) {
     add("detection_seconds", "Detection, s");
+    add("motion_seconds", "Motion, s");
     add("real_seconds", "Whole run, s");
   }
+  add("mean_strain", "Mean strain");
+  add("least_strain", "Least mean");
+  add("most_strain", "Greatest mean");
+  add("largest_strain", "Largest strain of an edge");
   add("failure", "Broke off");
   return table;
 }
 
-std::vector<Cell> row_of(const Runs& runs, std::uint64_t seed, const RunCounts& run, bool by_clock) {
+std::vector<Cell> row_of(const Runs& runs, std::uint64_t seed, const RunCounts& run, RunClock clock) {
   std::vector<Cell> row{runs.scene.name,
                         runs.edge ? Cell(*runs.edge) : Cell(),
                         std::string(word_of(runs.volume)),
@@ -44,9 +49,11 @@ std::vector<Cell> row_of(const Runs& runs, std::uint64_t seed, const RunCounts& 
                         runs.objects,
                         run.broad,
                         run.narrow};
-  if (!by_clock) row.emplace_back(run.exact);
+  if (clock == RunClock::simulated) row.emplace_back(run.exact);
   row.emplace_back(run.steps);
-  if (by_clock) row.insert(row.end(), {run.detection_seconds, run.real_seconds});
+  if (clock != RunClock::simulated)
+    row.insert(row.end(), {run.detection_seconds, run.motion_seconds, run.real_seconds});
+  row.insert(row.end(), {run.strain.mean, run.strain.least, run.strain.most, run.strain.largest});
   row.push_back(run.failure.empty() ? Cell() : Cell(run.failure));
   return row;
 }
@@ -61,12 +68,14 @@ bool read(const std::vector<std::string>& fields, std::size_t& place, Number& nu
 }
 
 /// The counts in a row of the file; false when a field is not a number.
-bool read(const std::vector<std::string>& fields, bool by_clock, RunCounts& run) {
+bool read(const std::vector<std::string>& fields, RunClock clock, RunCounts& run) {
   std::size_t place = 5;
   run.failure = fields.back();
-  return read(fields, place, run.broad) && read(fields, place, run.narrow) &&
-         (by_clock || read(fields, place, run.exact)) && read(fields, place, run.steps) &&
-         (!by_clock || (read(fields, place, run.detection_seconds) && read(fields, place, run.real_seconds)));
+  const bool by_steps = clock == RunClock::simulated;
+  const auto read_all = [&](auto&... numbers) { return (read(fields, place, numbers) && ...); };
+  return read_all(run.broad, run.narrow) && (!by_steps || read_all(run.exact)) && read_all(run.steps) &&
+         (by_steps || read_all(run.detection_seconds, run.motion_seconds, run.real_seconds)) &&
+         read_all(run.strain.mean, run.strain.least, run.strain.most, run.strain.largest);
 }
 
 std::string key_of(const std::vector<std::string>& fields) {
@@ -79,17 +88,28 @@ std::vector<std::string> fields_of(const std::vector<Cell>& row) {
 
 }  // namespace
 
-Table runs_table(const std::vector<Runs>& all, std::uint64_t first_seed, bool by_clock) {
-  Table table = empty_table(by_clock);
+std::string name_of(RunClock clock) {
+  switch (clock) {
+    case RunClock::detection:
+      return "table1_clock";
+    case RunClock::program:
+      return "table1_program";
+    default:
+      return "table1";
+  }
+}
+
+Table runs_table(const std::vector<Runs>& all, std::uint64_t first_seed, RunClock clock) {
+  Table table = empty_table(clock);
   for (const Runs& runs : all) {
     for (std::size_t i = 0; i < runs.counts.size(); ++i)
-      table.add(row_of(runs, first_seed + i, runs.counts[i], by_clock));
+      table.add(row_of(runs, first_seed + i, runs.counts[i], clock));
   }
   return table;
 }
 
-RunLog::RunLog(const fs::path& folder, bool by_clock, bool resume) : by_clock_(by_clock) {
-  const Table table = empty_table(by_clock);
+RunLog::RunLog(const fs::path& folder, RunClock clock, bool resume) : clock_(clock) {
+  const Table table = empty_table(clock);
   const fs::path path = folder / (table.name + ".csv");
   const std::string header = csv_head() + csv_of(table);
   std::size_t length = 0;
@@ -103,7 +123,7 @@ RunLog::RunLog(const fs::path& folder, bool by_clock, bool resume) : by_clock_(b
                       path.string()));
     for (std::size_t i = 1; i < csv.rows.size(); ++i) {
       RunCounts run;
-      if (csv.rows[i].size() != table.columns.size() || !read(csv.rows[i], by_clock, run))
+      if (csv.rows[i].size() != table.columns.size() || !read(csv.rows[i], clock, run))
         throw Error(fmt::format("{}: row {} is not a run; remove it, or leave out --resume to start again",
                                 path.string(), i));
       done_[key_of(csv.rows[i])] = run;
@@ -119,12 +139,12 @@ RunLog::RunLog(const fs::path& folder, bool by_clock, bool resume) : by_clock_(b
 }
 
 const RunCounts* RunLog::find(const Runs& runs, std::uint64_t seed) const {
-  const auto found = done_.find(key_of(fields_of(row_of(runs, seed, {}, by_clock_))));
+  const auto found = done_.find(key_of(fields_of(row_of(runs, seed, {}, clock_))));
   return found == done_.end() ? nullptr : &found->second;
 }
 
 void RunLog::add(const Runs& runs, std::uint64_t seed, const RunCounts& counts) {
-  const std::string line = csv_of(row_of(runs, seed, counts, by_clock_));
+  const std::string line = csv_of(row_of(runs, seed, counts, clock_));
   std::fwrite(line.data(), 1, line.size(), file_->stream());
   std::fflush(file_->stream());
   file_->check();

@@ -58,6 +58,8 @@ std::vector<std::pair<std::string, std::string>> describe(const Table1Options& o
           rows.emplace_back(cli::flag_of(field.key), cli::spelled_value(field, value));
       },
       options.method);
+  if (has_effect(options.method, "lazy_refit") && options.method.scene.comparison.lazy_refit)
+    rows.emplace_back("--fused-refit", options.method.fused_refit ? "on" : "off");
   if (options.method.root_is_border) {
     rows.emplace_back("--scene-octree-root", "border");
   } else if (const auto& root = options.method.scene.scene_octree.root) {
@@ -69,10 +71,10 @@ std::vector<std::pair<std::string, std::string>> describe(const Table1Options& o
   rows.emplace_back("--runs", fmt::format("{}", options.runs));
   rows.emplace_back("--seed", fmt::format("{}", options.seed));
   rows.emplace_back("--seconds", fmt::format("{}", options.simulated_seconds));
-  if (options.wall_clock) {
-    rows.emplace_back("--wall-clock", fmt::format("{}", *options.wall_clock));
+  if (options.wall_clock) rows.emplace_back("--wall-clock", fmt::format("{}", *options.wall_clock));
+  if (options.program_clock) rows.emplace_back("--program-clock", fmt::format("{}", *options.program_clock));
+  if (options.wall_clock || options.program_clock)
     rows.emplace_back("--threads", fmt::format("{}", options.threads.value_or(1)));
-  }
   return rows;
 }
 

@@ -67,12 +67,44 @@ std::string name_of(const Runs& runs) {
                      word_of(runs.volume));
 }
 
+/// Samples the strain of all bodies.
+class StrainSampler {
+ public:
+  static constexpr std::uint64_t every = 25;  // steps
+
+  void add(const Simulation& simulation, RunStrain& strain) {
+    double sum = 0, bodies = 0;
+    for (const ObjectId id : simulation.scene().objects()) {
+      const MassSpringBody* const body = simulation.body(id);
+      if (body == nullptr) continue;
+      const EdgeStrain of_body = body->edge_strain();
+      strain.largest = std::max(strain.largest, of_body.largest);
+      sum += of_body.mean;
+      ++bodies;
+    }
+    if (bodies == 0) return;
+    ++samples_;
+    const double mean = sum / bodies;
+    strain.mean += (mean - strain.mean) / samples_;
+    if (simulation.time() < 1) return;
+    strain.least = is_first_ ? mean : std::min(strain.least, mean);
+    strain.most = std::max(strain.most, mean);
+    is_first_ = false;
+  }
+
+ private:
+  double samples_ = 0;
+  bool is_first_ = true;
+};
+
 }  // namespace
 
 RunCounts run_scene(const Table1Scene& scene, const Table1Method& method, BoundingVolume volume,
                     std::uint64_t seed, std::uint32_t threads,
-                    const std::function<bool(const RunCounts&)>& go_on) {
+                    const std::function<bool(const RunCounts&)>& go_on,
+                    const std::function<void(cli::Input&)>& change) {
   cli::Input input = read_scene(scene, method.integrator, seed);
+  if (change) change(input);
   input.simulation.scene = method.scene;
   input.simulation.scene.bounding_volume = volume;
   input.simulation.scene.threads = threads;
@@ -82,9 +114,11 @@ RunCounts run_scene(const Table1Scene& scene, const Table1Method& method, Boundi
   }
   // Other methods refuse options of the scene octree.
   if (!viewer::uses_scene_octree(method.scene.broad_phase)) input.simulation.scene.scene_octree = {};
+  input.simulation.fused_refit = method.fused_refit && method.scene.comparison.lazy_refit;
   for (cli::InputObject& object : input.objects) object.options.octree = method.octree;
   Simulation simulation = cli::build_simulation(input);
   RunCounts counts;
+  StrainSampler strain;
   const auto count = [&](const DetectResult& result) {
     counts.broad += result.volume_events.begin.size();
     counts.narrow += result.narrow_phase_events.begin.size();
@@ -95,7 +129,8 @@ RunCounts run_scene(const Table1Scene& scene, const Table1Method& method, Boundi
   try {
     while (go_on(counts)) {
       count(simulation.step());
-      ++counts.steps;
+      counts.motion_seconds += simulation.motion_seconds();
+      if (++counts.steps % StrainSampler::every == 0) strain.add(simulation, counts.strain);
     }
   } catch (const MotionError& error) {
     counts.failure = error.what();
@@ -182,10 +217,11 @@ std::optional<std::vector<Runs>> run_by_steps(const Table1Options& options, RunL
   return all;
 }
 
-std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunLog& log,
+std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunClock clock, RunLog& log,
                                               const cli::Interruption& interruption, bool show_progress) {
   constexpr double ticks = 100;  // of progress in a second
-  const double run_seconds = *options.wall_clock;
+  const bool with_motion = clock == RunClock::program;
+  const double run_seconds = with_motion ? *options.program_clock : *options.wall_clock;
   Table1Method method = options.method;
   method.scene.contacts = ContactKinds::none;
   std::vector<Task> tasks;
@@ -195,16 +231,18 @@ std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunL
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     Runs& runs = all[tasks[i].runs];
     const std::uint64_t seed = options.seed + tasks[i].run;
-    const std::string what = fmt::format("run {} of {} by the clock: {}", i + 1, tasks.size(), name_of(runs));
+    const std::string what = fmt::format("run {} of {} by the clock{}: {}", i + 1, tasks.size(),
+                                         with_motion ? " with motion" : "", name_of(runs));
     std::uint64_t shown = 0;
     RunCounts counts;
     const double real_seconds = seconds_of([&] {
-      counts = run_scene(runs.scene, method, runs.volume, seed, options.threads.value_or(1),
-                         [&](const RunCounts& so_far) {
-                           const auto reached = static_cast<std::uint64_t>(so_far.detection_seconds * ticks);
-                           if (reached > shown) work.done(reached - std::exchange(shown, reached), what);
-                           return so_far.detection_seconds < run_seconds && interruption.signal() == 0;
-                         });
+      counts = run_scene(
+          runs.scene, method, runs.volume, seed, options.threads.value_or(1), [&](const RunCounts& so_far) {
+            const double seconds = so_far.detection_seconds + (with_motion ? so_far.motion_seconds : 0);
+            const auto reached = static_cast<std::uint64_t>(seconds * ticks);
+            if (reached > shown) work.done(reached - std::exchange(shown, reached), what);
+            return seconds < run_seconds && interruption.signal() == 0;
+          });
     });
     if (interruption.signal() != 0) return std::nullopt;
     counts.real_seconds = real_seconds;

@@ -11,27 +11,42 @@
 #include "base/interruption.hpp"
 #include "base/output_file.hpp"
 #include "fit.hpp"
+#include "inputs/inputs.hpp"
 #include "table.hpp"
 #include "table1/table1_options.hpp"
 
 namespace supple::experiments {
 
+/// How long a run lasts: in simulated time, by the clock of its detection, or by the clock of its detection
+/// and motion together.
+enum class RunClock { simulated, detection, program };
+
+/// The strain of edges in a run, sampled every 25 steps; 0 without bodies of masses and springs.
+struct RunStrain {
+  double mean = 0;             ///< over bodies and samples, of the mean over the edges of a body
+  double least = 0, most = 0;  ///< of the means of the samples from the second second on
+  double largest = 0;          ///< of an edge
+};
+
 /// Numbers of collisions that begin in one run.
 struct RunCounts {
   std::uint64_t broad = 0;   ///< pairs of objects whose volumes begin to overlap
   std::uint64_t narrow = 0;  ///< pairs whose octrees' leaves begin to overlap: the paper's output
-  std::uint64_t exact = 0;   ///< pairs whose triangles begin to intersect; 0 in runs by the clock
+  std::uint64_t exact = 0;   ///< pairs whose triangles begin to intersect; 0 in runs by a clock
   std::uint64_t steps = 0;
   double detection_seconds = 0;  ///< of all steps, without the motion
-  double real_seconds = 0;       ///< of the whole run; only in runs by the clock
-  std::string failure{};         ///< why the motion failed; empty on success
+  double motion_seconds = 0;     ///< of all steps, without the detection
+  double real_seconds = 0;       ///< of the whole run; only in runs by a clock
+  RunStrain strain{};
+  std::string failure{};  ///< why the motion failed; empty on success
 };
 
-/// One run of a scene, until `go_on(counts so far)` returns false. The counts are the same for any number of
-/// threads.
+/// One run of a scene, which `change` may change, until `go_on(counts so far)` returns false. The counts are
+/// the same for any number of threads.
 RunCounts run_scene(const Table1Scene& scene, const Table1Method& method, BoundingVolume volume,
                     std::uint64_t seed, std::uint32_t threads,
-                    const std::function<bool(const RunCounts&)>& go_on);
+                    const std::function<bool(const RunCounts&)>& go_on,
+                    const std::function<void(cli::Input&)>& change = {});
 
 /// All runs of one scene with one kind of volume.
 struct Runs {
@@ -40,7 +55,7 @@ struct Runs {
   std::uint64_t objects = 0;
   std::optional<double> edge{};  ///< the longest of the border
   BoundingVolume volume{};
-  double run_seconds = 0;  ///< of a run: simulated time, or time of detection
+  double run_seconds = 0;  ///< of a run, by its clock
   std::vector<RunCounts> counts{};
 
   /// The numbers of the runs that did not break off.
@@ -60,21 +75,23 @@ const Runs* find(const std::vector<Runs>& all, const std::string& scene, Boundin
 
 /// The table with one row per run. Times are in it only by the clock, so that the table of the runs by steps
 /// is the same on every machine.
-Table runs_table(const std::vector<Runs>& all, std::uint64_t first_seed, bool by_clock);
+Table runs_table(const std::vector<Runs>& all, std::uint64_t first_seed, RunClock clock);
+/// `table1`, `table1_clock` or `table1_program`: the names of tables begin so.
+std::string name_of(RunClock clock);
 
 /// The complete runs, in the file of `runs_table`, which gets a row as soon as a run is complete.
 class RunLog {
  public:
   /// Starts the file in a folder, or with `resume` keeps its rows. Throws `Error` when the file is not such a
   /// table.
-  RunLog(const std::filesystem::path& folder, bool by_clock, bool resume);
+  RunLog(const std::filesystem::path& folder, RunClock clock, bool resume);
 
   /// Null when the run is not complete.
   const RunCounts* find(const Runs& runs, std::uint64_t seed) const;
   void add(const Runs& runs, std::uint64_t seed, const RunCounts& counts);
 
  private:
-  bool by_clock_;
+  RunClock clock_;
   std::map<std::string, RunCounts> done_;  ///< by scene, edge, volume and seed
   std::optional<cli::OutputFile> file_;
 };
@@ -84,9 +101,9 @@ class RunLog {
 /// interruption.
 std::optional<std::vector<Runs>> run_by_steps(const Table1Options& options, RunLog& log,
                                               const cli::Interruption& interruption, bool show_progress);
-/// The same for `wall_clock` seconds of detection per run, one run after the other. These runs have no exact
-/// stage, as in the paper.
-std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunLog& log,
+/// The same for a time per run, `wall_clock` or `program_clock`, one run after the other. These runs have no
+/// exact stage, as in the paper.
+std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunClock clock, RunLog& log,
                                               const cli::Interruption& interruption, bool show_progress);
 
 }  // namespace supple::experiments

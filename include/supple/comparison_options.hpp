@@ -61,6 +61,16 @@ struct ObjectOctreeOptions {
   bool rebuild_degraded = true;
 };
 
+/// The order in which the narrow phase compares the children of two nodes. The candidates are the same, and
+/// with spheres those of `one_side_first` can be fewer; the contacts are the same.
+enum class Descent : std::uint8_t {
+  both_sides,  ///< all children of one node with all of the other, with vector instructions
+  /// As in the paper's Figure 4: the children of the first node with the second node, then those that collide
+  /// with the children of the second node. `StepStats::boxes_tested` counts these tests. For contacts at
+  /// rest; it is slower.
+  one_side_first,
+};
+
 /// A cube: its lowest corner and the length of its edges, > 0. The corner has no coordinate beyond ±1e36, and
 /// the edge is from 1e-30 to 1e36, so that single precision can represent its halves.
 struct RootCube {
@@ -72,6 +82,8 @@ struct RootCube {
 
 /// The smallest cube around a box, with the same centre. Throws `Error` when the box has no finite size.
 RootCube cube_around(Vec3d lowest, Vec3d highest);
+
+inline constexpr std::uint32_t most_full_levels = 6;
 
 /// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
 /// is an `Error` when the broad phase is grid, sweep or brute.
@@ -85,6 +97,13 @@ struct SceneOctreeOptions {
   std::uint32_t expand_at = 0;
   /// The pairs are the same for both tests.
   RegionSphereTest region_sphere_test = RegionSphereTest::arvo;
+  /// Also count objects that are too large for regions of half the edge, although dividing cannot separate
+  /// them, as in the paper's Figure 2: a region expands whenever it has `expand_at` objects. It needs a
+  /// `max_level` of at most `most_full_levels`, because each object is then in up to 8^max_level regions.
+  bool expand_for_large_objects = false;
+  /// Levels that are always there, 0 to `most_full_levels`: regions above this level expand in any case. 1 in
+  /// the paper.
+  std::uint32_t min_level = 0;
   /// Children of a region: 8, 4 or 2.
   std::uint32_t arity = 8;
   /// The root region. Without a value it is fitted to most of the objects, and again when they leave it. The
@@ -101,6 +120,13 @@ struct ComparisonOptions {
   /// Also report the paper's output: the vertices in the colliding leaves of both octrees
   /// (`DetectResult::colliding_vertices`). None are reported when continuous contacts are the only kind.
   bool colliding_vertices = false;
+  Descent descent = Descent::both_sides;
+  /// Refit in each step only the volume of each object, and the nodes below where two objects may collide, as
+  /// in the paper (section 6). The contacts are the same. For intersections and for no contacts, with boxes
+  /// or spheres: other kinds, objects that are tested against themselves, and those with edges or points of
+  /// no triangle or vertices that are not finite refit all. Octrees are not rebuilt. One thread refits the
+  /// nodes.
+  bool lazy_refit = false;
 };
 
 }  // namespace supple

@@ -18,10 +18,12 @@ class Scene;
 /// A cell of an object's octree: a node of the paper, A(h, k).
 struct OctreeCell {
   std::uint32_t level = 0;  ///< k; the root is 0
-  /// h: the root is 0, and the children of h are mh + 1 … mh + m in a tree of arity m, in the order of the
-  /// tree. Octants without triangles are left out, so the children that exist have the first numbers, and a
-  /// node that shrank to one of its octants has no number for the others. Empty when the number does not fit
-  /// into 64 bits, which is possible below level 21 of an octree (31 with arity 4, 62 with arity 2).
+  /// h: the root is 0, and the children of h are mh + 1 … mh + m in a tree of arity m. In a regular octree
+  /// they are the octants of the cube around the centres of the triangles in the rest pose, also those
+  /// without triangles: bit 0 of a child is the upper half in x, bit 1 in y, bit 2 in z. A node whose
+  /// triangles are all in one octant shrinks to it, so h may be that of a deeper level than `level`. In other
+  /// trees, the children that exist have the first numbers. Empty when the number does not fit into 64 bits,
+  /// which is possible below level 20 of an octree (31 with arity 4, 62 with arity 2).
   std::optional<std::uint64_t> number = 0;
   bool is_leaf = true;
   std::uint32_t triangle_count = 0;
@@ -57,8 +59,8 @@ struct NodePairList {
     std::uint32_t a = 0, b = 0;  ///< places in `nodes_a` and `nodes_b`
     constexpr auto operator<=>(const Pair&) const = default;
   };
-  /// The nodes of each object that collide, each once, by level and number. For one object with itself, both
-  /// lists are of this object.
+  /// The nodes of each object that collide, each once, by level and in the order of the octree. For one
+  /// object with itself, both lists are of this object.
   std::vector<OctreeCell> nodes_a, nodes_b;
   std::vector<Pair> pairs;  ///< level by level; within a level ascending
   /// First pair of each level, then the number of pairs. Level k is [level_begin[k], level_begin[k + 1]).

@@ -22,6 +22,8 @@ inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid
 template <>
 inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>
+inline constexpr std::array words<Descent>{"both_sides", "one_side_first"};
+template <>
 inline constexpr std::array words<ContactKinds>{"none",
                                                 "intersection",
                                                 "continuous",
@@ -140,6 +142,21 @@ struct Description<SceneOctreeOptions> {
         .range = ValueRange::from(2, 0xffffffff).or_zero(),
         .unit = "objects",
         .key = "scene_octree_expand_at"});
+    visitor(Field<Options, bool>{
+        .name = "expand_for_large_objects",
+        .member = &Options::expand_for_large_objects,
+        .doc =
+            "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure "
+            "2); needs a deepest level from 1 to 6",
+        .key = "scene_octree_expand_for_large",
+        .truth_words = {"off", "on"}});
+    visitor(Field<Options, std::uint32_t>{.name = "min_level",
+                                          .member = &Options::min_level,
+                                          .doc =
+                                              "Regions above this level of the scene octree always expand; "
+                                              "1 in the paper",
+                                          .range = ValueRange::from(0, most_full_levels),
+                                          .key = "scene_octree_min_level"});
     visitor(Field<Options, RegionSphereTest>{.name = "region_sphere_test",
                                              .member = &Options::region_sphere_test,
                                              .doc = "Test of a region of the scene octree against a sphere: "
@@ -233,6 +250,17 @@ struct Description<ComparisonOptions> {
         .name = "colliding_vertices",
         .member = &Options::colliding_vertices,
         .doc = "Also report the paper's output: the vertices in the colliding leaves of both octrees"});
+    visitor(Field<Options, Descent>{
+        .name = "descent",
+        .member = &Options::descent,
+        .doc =
+            "Order in which the children of two nodes are compared: all with all (both sides), or first the "
+            "children of one node with the other node, as in the paper's Figure 4 (one side first)"});
+    visitor(Field<Options, bool>{
+        .name = "lazy_refit",
+        .member = &Options::lazy_refit,
+        .doc = "Refit below the root of an object only the nodes where it may collide with another object",
+        .truth_words = {"off", "on"}});
   }
 };
 

@@ -194,6 +194,16 @@ struct SceneOptions {
   ComparisonOptions comparison{};
 };
 
+/// The options with the method of the paper's program of 2007: the octree of the scene as in Figure 2, with
+/// level 1 always there and 64 leaves at most (level-allowed = 2), the region test of the grown box, the
+/// descent of Figure 4, the lazy refit, and the colliding vertices of both sides as its output. Other options
+/// stay, with boxes instead of volumes that the paper does not have. Objects need `octree_of_2007`.
+/// `SimulationOptions::fused_refit` belongs to the method, too, and the root of the scene octree is the cube
+/// of the scene.
+SceneOptions with_method_of_2007(SceneOptions options);
+/// The paper's octree of an object: regular, down to single triangles.
+ObjectOctreeOptions octree_of_2007();
+
 /// The contacts that one call of `Scene::detect` finds, and limits of the call.
 struct DetectRequest {
   /// Without a value, these are those of `SceneOptions`.

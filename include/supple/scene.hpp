@@ -82,6 +82,12 @@ class Scene {
   /// Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Replaces earlier
   /// transforms, translations and paths. Throws `Error` when the number of positions differs from the mesh.
   void set_positions(ObjectId object, PositionsView positions);
+  /// The same with the lowest and the highest coordinates of the positions, which a loop over all vertices,
+  /// such as that of a motion, can compute at little cost. With `ComparisonOptions::lazy_refit`, `detect`
+  /// then does not read the vertices of an object that meets no other one. All positions must be finite and
+  /// within the bounds: nothing checks that, and otherwise `detect` misses contacts. Throws `Error` when a
+  /// bound is not finite.
+  void set_positions(ObjectId object, PositionsView positions, const std::array<Vec3d, 2>& bounds);
   /// Sets the positions of some vertices, O(k) for k of them, where only a part of the object moves: all
   /// others stay. `detect` then refits only the nodes of the octree around these vertices, to the same
   /// volumes. The positions are those that were last set, before the object's transform and translation,

@@ -19,7 +19,7 @@
 namespace supple {
 
 inline constexpr const char* format_name = "supple recording";
-inline constexpr std::uint32_t format_version = 3;
+inline constexpr std::uint32_t format_version = 4;
 /// The oldest supported version. Values that it lacks get their defaults.
 inline constexpr std::uint32_t oldest_version = 1;
 

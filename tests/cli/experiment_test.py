@@ -52,7 +52,7 @@ class Experiment(ProgramTest):
         done = self.run_here("experiment", *TINY, "--output", "out")
         self.assertEqual((done.status, done.error), (0, ""))
         self.assertIn("What holds", done.out)
-        self.check_page(self.folder / "out/table1.html", plots=2)
+        self.check_page(self.folder / "out/table1.html", plots=4)
         runs = self.rows("out/table1_runs.csv")
         self.assertEqual({r["scene"] for r in runs}, {"table1_3", "table1_6", "table1_9", "three_humans"})
         self.assertEqual({r["volume"] for r in runs}, {"aabb", "sphere"})
@@ -151,7 +151,7 @@ class Experiment(ProgramTest):
         script = pathlib.Path(PROGRAM).parent / "supple-experiment-report"
         done = subprocess.run([script, self.folder / "out"], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
-        self.check_page(self.folder / "out/table1.html", plots=2)
+        self.check_page(self.folder / "out/table1.html", plots=4)
         done = subprocess.run([script, self.folder], capture_output=True, text=True)
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
 
@@ -160,7 +160,8 @@ class Experiment(ProgramTest):
     )
     def test_quick_versions(self):
         for name, plots, table in (("scaling", 5, "scaling_vertices"), ("arity", 3, "arity_objects"),
-                                   ("volumes", 4, "volumes"), ("claims", 0, "claims_motion")):
+                                   ("volumes", 4, "volumes"), ("claims", 0, "claims_motion"),
+                                   ("ablation", 2, "ablation"), ("trials", 1, "trials"), ("sensitivity", 1, "sensitivity")):
             done = self.run_here("experiment", name, "--quick")
             self.assertEqual((done.status, done.error), (0, ""))
             page = self.check_page(self.folder / f"experiment_{name}/{name}.html", plots)
@@ -168,7 +169,7 @@ class Experiment(ProgramTest):
             self.assertNotIn("nan", page)
 
     def test_unusable(self):
-        self.assert_one_line_error(run("experiment", "table2"), "table2", "table1, scaling, arity, volumes or claims")
+        self.assert_one_line_error(run("experiment", "table2"), "table2", "table1, scaling, arity, volumes, claims, ablation, trials or sensitivity")
         self.assert_one_line_error(run("experiment", "scaling", "--runs", "3"), "--runs", "table1")
         self.assert_one_line_error(run("experiment", "arity", "--max-level", "3"), "--max-level", "table1")
         for arguments, parts in (

@@ -74,7 +74,7 @@ class Options(ProgramTest):
         octree = {"broad_phase": (["--broad-phase", "octree"], "octree")}
         intersection = {"contacts": (["--contacts", "intersection"], "intersection")}
         continuous = {"contacts": (["--contacts", "continuous"], "continuous")}
-        with_octree = ("region_test", "scene_octree_max_level", "scene_octree_expand_at", "scene_octree_arity", "scene_octree_root")
+        with_octree = ("region_test", "scene_octree_max_level", "scene_octree_expand_at", "scene_octree_arity", "scene_octree_root", "scene_octree_min_level", "scene_octree_expand_for_large")
         proximity = {"contacts": (["--contacts", "proximity"], "proximity")}
         penetration = {"contacts": (["--contacts", "penetration"], "intersection,penetration")}
         of_continuous = ("min_separation", "undecided", "max_time", "skip_parting", "continuous_listing", "solid")
@@ -82,13 +82,13 @@ class Options(ProgramTest):
         of_intersections = ("neighbours",)
         of_penetration = ("depths",)
         of_patches = ("manifolds",)
-        of_triangles = ("contact_points", "colliding_vertices", "sphere_fit")
+        of_triangles = ("contact_points", "colliding_vertices", "sphere_fit", "descent", "lazy_refit")
         for fixed, without in (
             (octree | continuous, (*of_triangles, *of_proximity, *of_intersections, *of_penetration, *of_patches)),
             (octree | intersection, (*of_continuous, *of_proximity, *of_penetration, *of_patches, "element_kinds")),
             (intersection, (*of_continuous, *of_proximity, *of_penetration, *of_patches, "element_kinds", *with_octree)),
             (proximity, (*of_continuous, *of_triangles, *of_intersections, *of_penetration, *with_octree)),
-            (penetration, (*(set(of_continuous + of_proximity) - {"solid"}), "element_kinds", *with_octree)),
+            (penetration, ("lazy_refit", *(set(of_continuous + of_proximity) - {"solid"}), "element_kinds", *with_octree)),
         ):
             others = {key: other for key, other in (self.others() | fixed).items() if key not in without}
             words = [word for arguments, _ in others.values() for word in arguments]

@@ -721,9 +721,9 @@ class Diff(RecordingTest):
             del file["contacts/kind"]
 
         def raise_version(file):
-            file.attrs["version"] = 4
+            file.attrs["version"] = 5
 
-        for change, part in ((delete, "/contacts/kind: is missing"), (raise_version, "is a recording of version 4")):
+        for change, part in ((delete, "/contacts/kind: is missing"), (raise_version, "is a recording of version 5")):
             (self.folder / "bad.h5").write_bytes((self.folder / "a.h5").read_bytes())
             with h5py.File(self.folder / "bad.h5", "r+") as file:
                 change(file)

@@ -44,6 +44,12 @@ NB_MODULE(_core, module) {
       throw supple::Error("options: there are no options '" + structure + "'; there are those of " + known);
     return list;
   });
+  module.def("method_of_2007", [](const nb::dict& keywords) {
+    supple::SceneOptions scene;
+    set_options(scene, keywords, "method_of_2007");
+    const supple::ObjectOptions object{.octree = supple::octree_of_2007()};
+    return nb::make_tuple(dict_of(supple::with_method_of_2007(scene)), dict_of(object.octree));
+  });
   module.def("end_calls", &WithoutGil::end_calls);
   module.def("forget_calls", &WithoutGil::forget_calls);
   bind_results(module);

@@ -157,6 +157,23 @@ bool set_option(Struct& options, const std::string& keyword, nb::handle value, c
   return is_set;
 }
 
+/// The options of a structure that are numbers or words, by key.
+template <class Struct>
+nb::dict dict_of(const Struct& options) {
+  nb::dict dict;
+  for_each_leaf(
+      [&]<class Field>(const Field& field, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (Worded<Value>) {
+          dict[field.key] = word_of(value);
+        } else if constexpr (std::is_arithmetic_v<Value>) {
+          dict[field.key] = value;
+        }
+      },
+      options);
+  return dict;
+}
+
 /// The options of a structure: a list of (keyword, type in words, default in words, documentation, unit).
 template <Described Struct>
 nb::list list_options() {

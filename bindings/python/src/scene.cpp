@@ -373,20 +373,7 @@ void bind_scene(nb::module_& module) {
     const Together together(core.guard());
     return triangles_of_object(core.scene(), id);
   });
-  scene.def("options", [](SceneCore& core) {
-    nb::dict dict;
-    for_each_leaf(
-        [&]<class Field>(const Field& field, const auto& value) {
-          using Value = std::remove_cvref_t<decltype(value)>;
-          if constexpr (Worded<Value>) {
-            dict[field.key] = word_of(value);
-          } else if constexpr (std::is_arithmetic_v<Value>) {
-            dict[field.key] = value;
-          }
-        },
-        core.scene().options());
-    return dict;
-  });
+  scene.def("options", [](SceneCore& core) { return dict_of(core.scene().options()); });
   bind_queries(module, scene);
 }
 

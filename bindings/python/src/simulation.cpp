@@ -255,6 +255,11 @@ void bind_simulation(nb::module_& module) {
     const EdgeStrain strain = b.edge_strain();
     return nb::make_tuple(strain.largest, strain.mean);
   });
+  body.def("bounds", [vector](const MassSpringBody& b) -> nb::object {
+    const auto bounds = b.bounds();
+    if (!bounds) return nb::none();
+    return nb::make_tuple(vector((*bounds)[0]), vector((*bounds)[1]));
+  });
   body.def("springs", [](const MassSpringBody& b) {
     std::vector<std::uint32_t> ends;
     std::vector<double> lengths;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import atexit
 import os
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from . import _core
 from ._broad_phase import BroadPhase, enclosing_boxes
@@ -76,6 +76,14 @@ def options(structure: str = "SceneOptions") -> list[Option]:
     return [each._replace(name="self_collision") if each.name == "self" else each for each in found]
 
 
+def method_of_2007(**scene: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The method of the paper's program: the options of a scene, with those that are given, and those of its
+    objects. `scene, objects = supple.method_of_2007(); s = supple.Scene(**scene); s.add(mesh, **objects)`. A
+    simulation also takes `fused_refit=True`; the root of the scene octree is the cube of the scene:
+    `scene_octree_root=(x, y, z, edge)`."""
+    return _core.method_of_2007(scene)
+
+
 __all__ = [
     "BoundingVolume",
     "BroadPhase",
@@ -86,6 +94,7 @@ __all__ = [
     "ContinuousDifferenceFault",
     "ContinuousListing",
     "CurveKind",
+    "Descent",
     "ElementKinds",
     "ElementPairKind",
     "Error",
@@ -149,6 +158,7 @@ __all__ = [
     "make_icosphere",
     "make_model",
     "make_torus",
+    "method_of_2007",
     "model_names",
     "open",
     "options",

@@ -34,6 +34,15 @@ class RegionSphereTest(enum.IntEnum):
     "the paper's: center inside the region grown by the radius; reports too much near corners"
 
 
+class Descent(enum.IntEnum):
+    'The order in which the narrow phase compares the children of two nodes. The candidates are the same, and with spheres those of `one_side_first` can be fewer; the contacts are the same.'
+
+    both_sides = 0
+    'all children of one node with all of the other, with vector instructions'
+    one_side_first = 1
+    "As in the paper's Figure 4: the children of the first node with the second node, then those that collide with the children of the second node. `StepStats.boxes_tested` counts these tests. For contacts at rest; it is slower."
+
+
 class FeatureKind(enum.IntEnum):
     'The smallest part of a triangle on which a point of an intersection lies.'
 
@@ -286,7 +295,7 @@ class Integrator(enum.IntEnum):
     'Implicit: up to six sparse linear systems per step. First order, stable at any stiffness.'
 
 
-ENUMERATIONS = [ObjectOctreeBuild, SphereFit, RegionSphereTest, FeatureKind, IntersectionKind, ElementPairKind, ImpactCertainty, PairStage, Lasting, ManifoldSource, BoundingVolume, BroadPhaseMethod, ContactKinds, ElementKinds, ContinuousListing, PenetrationDepths, Neighbours, CurveKind, ProximityListing, Containment, NothingToTest, ContinuousDifferenceFault, ProximityDifferenceFault, PenetrationDifferenceFault, Integrator]
+ENUMERATIONS = [ObjectOctreeBuild, SphereFit, RegionSphereTest, Descent, FeatureKind, IntersectionKind, ElementPairKind, ImpactCertainty, PairStage, Lasting, ManifoldSource, BoundingVolume, BroadPhaseMethod, ContactKinds, ElementKinds, ContinuousListing, PenetrationDepths, Neighbours, CurveKind, ProximityListing, Containment, NothingToTest, ContinuousDifferenceFault, ProximityDifferenceFault, PenetrationDifferenceFault, Integrator]
 
 
 #: The comments of functions and methods in the headers.
@@ -335,6 +344,8 @@ CONTRACTS = {
         'area of all triangles, m²',
     'MassSpringBody::area_error':
         'The volume that closed parts enclose, m³, negative for parts wound inward; 0 when none is closed. Parts with a vertex that is not finite at rest do not count.',
+    'MassSpringBody::bounds':
+        'The lowest and the highest coordinates of all vertices, which `step` has found in its loop; nothing when a vertex is not finite or there is none. O(n / 2048) after a step, otherwise O(n).',
     'MassSpringBody::center_of_mass':
         'Σ m x × v, about the origin',
     'MassSpringBody::edge_strain':
@@ -669,6 +680,8 @@ CONTRACTS = {
         'Names of the built-in models, which replace the models of the paper, with their numbers of vertices and faces: pawn (154, 304), fish (216, 338), rabbit (453, 902), human (1250, 2500), bike (9543, 18238).',
     'norm':
         'See `norm` in supple/types.hpp.',
+    'octree_of_2007':
+        "The paper's octree of an object: regular, down to single triangles.",
     'one_line':
         'Text for messages and tables: valid UTF-8 in one line. Line breaks and other control characters become `replacement`. Blanks at the end are left out.',
     'operator|':
@@ -731,6 +744,8 @@ CONTRACTS = {
         'The mesh with the first of the vertices at the same position in place of all: what `ObjectOptions.weld` makes of it. Vertices keep their numbers. O(n).',
     'with_included':
         'The set with all that its kinds include.',
+    'with_method_of_2007':
+        "The options with the method of the paper's program of 2007: the octree of the scene as in Figure 2, with level 1 always there and 64 leaves at most (level-allowed = 2), the region test of the grown box, the descent of Figure 4, the lazy refit, and the colliding vertices of both sides as its output. Other options stay, with boxes instead of volumes that the paper does not have. Objects need `octree_of_2007`. `SimulationOptions.fused_refit` belongs to the method, too, and the root of the scene octree is the cube of the scene.",
     'word_of':
         'The word of a value; null when the value is not in the enumeration.',
 }

@@ -310,6 +310,11 @@ class MassSpringBody:
         return self._core.edge_strain()
 
     @property
+    def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """The lowest and the highest coordinates of all vertices; None when a vertex is not finite."""
+        return self._core.bounds()
+
+    @property
     def springs(self) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.float64]]:
         """The vertices of the spring on each edge, (k, 2), sorted, and their present rest lengths, (k,)."""
         (_, ends), (_, lengths) = self._core.springs()

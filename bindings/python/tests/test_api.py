@@ -116,6 +116,8 @@ TYPES = {
 }
 #: Functions and aliases with another name or form.
 OTHERS = {
+    "with_method_of_2007": "method_of_2007",
+    "octree_of_2007": "method_of_2007",
     "Border": "Simulation",
     "MotionFunction": "Simulation.add",
     "PairFilter": "Scene.set_pair_filter",
@@ -159,6 +161,7 @@ OTHERS = {
     "MassSpringBody::area": "MassSpringBody.area",
     "MassSpringBody::area_error": "MassSpringBody.area_error",
     "MassSpringBody::edge_strain": "MassSpringBody.edge_strain",
+    "MassSpringBody::bounds": "MassSpringBody.bounds",
     "MassSpringBody::center_of_mass": "MassSpringBody.center_of_mass",
     "MassSpringBody::energy": "MassSpringBody.energy",
     "MassSpringBody::mean_velocity": "MassSpringBody.mean_velocity",
@@ -215,6 +218,7 @@ LEFT_OUT = {
             "any_distance",
             "volume_kind_count",
             "most_exact_bits",
+            "most_full_levels",
             "SUPPLE_VERSION_MAJOR",
             "SUPPLE_VERSION_MINOR",
             "SUPPLE_VERSION_PATCH",

@@ -29,6 +29,22 @@ def test_the_answers_are_those_of_the_program(detect_json, tmp_path, rng):
     assert scene.verify()
 
 
+def test_the_method_of_2007_finds_the_same_contacts():
+    scene_options, object_options = supple.method_of_2007(bounding_volume="sphere")
+    assert scene_options["descent"] == "one_side_first" and object_options["leaf_size"] == 1
+    as_2007, defaults = supple.Scene(**scene_options), supple.Scene()
+    for name in ("pawn", "fish", "rabbit"):
+        as_2007.add(supple.make_model(name), **object_options)
+        defaults.add(supple.make_model(name))
+    found, expected = as_2007.detect(), defaults.detect()
+    assert len(expected.contacts) > 100
+    for name in ("triangle_a", "triangle_b"):
+        assert np.array_equal(found.contacts[name], expected.contacts[name])
+    assert len(found.colliding_vertices) > 0
+    with pytest.raises(supple.Error, match="aabb or sphere"):
+        supple.Scene(lazy_refit=True, bounding_volume="obb")
+
+
 def test_options_and_their_errors():
     names = {each.name for each in supple.options("SceneOptions")}
     assert {"contacts", "threads", "broad_phase", "min_separation"} <= names

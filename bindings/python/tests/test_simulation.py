@@ -137,6 +137,7 @@ def test_a_body_of_masses_and_springs():
     x = body.positions
     strains = np.abs(np.linalg.norm(x[ends[:, 0]] - x[ends[:, 1]], axis=1) / lengths - 1)
     assert np.allclose(body.edge_strain, (strains.max(), strains.mean()), rtol=1e-12)
+    assert np.allclose(body.bounds, (x.min(axis=0), x.max(axis=0)), rtol=0)
     body.undo_step()
     with pytest.raises(supple.Error):
         body.undo_step()

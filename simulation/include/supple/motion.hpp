@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -188,6 +189,9 @@ class MassSpringBody {
   double volume() const;
   AreaError area_error() const;
   EdgeStrain edge_strain() const;
+  /// The lowest and the highest coordinates of all vertices, which `step` has found in its loop; nothing when
+  /// a vertex is not finite or there is none. O(n / 2048) after a step, otherwise O(n).
+  std::optional<std::array<Vec3d, 2>> bounds() const;
   /// The spring on an edge: its vertices, a < b, and its present rest length, which plastic flow changes.
   struct Spring {
     std::uint32_t a = 0, b = 0;

@@ -85,6 +85,9 @@ struct SimulationOptions {
   /// place. Fixed vertices are not reflected. A side may be infinite.
   std::optional<Border> border{};
   std::uint64_t seed = 0;  ///< seed of all random numbers
+  /// The loop of the motion of masses and springs finds the bounds of each body, as in the paper (section
+  /// 5.2), so that the refit does not read their vertices again. Needs `ComparisonOptions::lazy_refit`.
+  bool fused_refit = false;
   /// Contacts push masses and springs apart; nothing: they do not. Fixed vertices and all other objects do
   /// not react. The margins of the objects are raised to `least_margin`. When the scene finds proximity in
   /// the listing of features, the response uses this result, otherwise it finds the same itself.

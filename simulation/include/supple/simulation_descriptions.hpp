@@ -254,6 +254,13 @@ struct Description<SimulationOptions> {
         Field<Options, std::uint64_t>{.name = "seed",
                                       .member = &Options::seed,
                                       .doc = "Seed of the random numbers: velocities, forces and rotations"});
+    visitor(Field<Options, bool>{
+        .name = "fused_refit",
+        .member = &Options::fused_refit,
+        .doc =
+            "The loop of the motion finds the bounds of each body, instead of a loop of the refit; needs a "
+            "lazy refit",
+        .truth_words = {"off", "on"}});
     visitor(Field<Options, std::optional<ContactResponse>>{
         .name = "response", .member = &Options::response, .doc = "Response to contacts"});
   }

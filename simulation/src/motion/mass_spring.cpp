@@ -96,7 +96,8 @@ MassSpring::MassSpring(const TriangleMesh& rest, const MassSpringOptions& option
       now_{rest.positions, std::vector<Vec3d>(rest.positions.size()), {}},
       next_(now_),
       forces_(network_),
-      bad_vertices_(network_.block_count(), none) {
+      bad_vertices_(network_.block_count(), none),
+      block_bounds_(network_.block_count()) {
   rest_areas_.reserve(triangles_.size());
   for (const Triangle& t : triangles_) {
     rest_areas_.push_back(triangle_area(rest.positions[t[0]], rest.positions[t[1]], rest.positions[t[2]]));
@@ -130,6 +131,7 @@ std::optional<std::string> MassSpring::try_step(double seconds, const Parallel& 
     rest_before_.areas = network_.areas.elements;
   }
   before_ = nullptr;
+  has_bounds_ = false;
   const double substep = seconds / options_.substeps;
   State* from = &now_;
   for (std::uint32_t i = 0; i < options_.substeps; ++i) {
@@ -143,6 +145,7 @@ std::optional<std::string> MassSpring::try_step(double seconds, const Parallel& 
   }
   before_ = from == &next_ ? &MassSpring::next_ : &MassSpring::after_next_;
   std::swap(now_, this->*before_);
+  has_bounds_ = true;
   return std::nullopt;
 }
 
@@ -153,6 +156,7 @@ void MassSpring::undo_step() {
   }
   std::swap(now_, this->*before_);
   before_ = nullptr;
+  has_bounds_ = false;
   restore_rest_shape();
 }
 
@@ -274,13 +278,16 @@ void MassSpring::for_blocks(const Parallel& parallel, Visit visit) {
 
 void MassSpring::check_vertices(const State& from, const State& to, std::uint32_t first, std::uint32_t last) {
   std::uint32_t bad = none;
+  Bounds bounds;
   for (std::uint32_t v = last; v-- > first;) {
+    bounds.add(to.positions[v], to.positions[v]);
     const Vec3d way = to.positions[v] - from.positions[v], velocity = to.velocities[v];
     const bool good = dot(way, way) <= longest_way_squared_ &&
                       dot(velocity, velocity) <= std::numeric_limits<double>::max();
     if (!good && kinds_[v] != VertexKind::inert) bad = v;
   }
   bad_vertices_[first / vertex_block_size] = bad;
+  block_bounds_[first / vertex_block_size] = bounds;
 }
 
 std::uint32_t MassSpring::first_bad_vertex() const {
@@ -309,6 +316,7 @@ void MassSpring::check_size(std::size_t size, const char* what) const {
 void MassSpring::set_positions(std::span<const Vec3d> positions) {
   check_size(positions.size(), "positions");
   std::copy(positions.begin(), positions.end(), now_.positions.begin());
+  has_bounds_ = false;
   now_.accelerations_known = false;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,6 +48,7 @@ class MassSpring {
   double volume() const;
   AreaError area_error() const;
   EdgeStrain edge_strain() const;
+  std::optional<std::array<Vec3d, 2>> bounds() const;
   std::vector<MassSpringBody::Spring> springs() const;
 
  private:
@@ -95,7 +99,21 @@ class MassSpring {
   RestShape rest_before_;
   ForceSum forces_;
   std::vector<Vec3d> predicted_;
+  struct Bounds {
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+    Vec3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+
+    void add(const Vec3d& lowest, const Vec3d& highest) {
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], lowest[axis]);
+        high[axis] = std::max(high[axis], highest[axis]);
+      }
+    }
+  };
+
   std::vector<std::uint32_t> bad_vertices_;  // the first invalid vertex of each block
+  std::vector<Bounds> block_bounds_;         // of the positions after a step
+  bool has_bounds_ = false;                  // they are those of `now_`
   std::unique_ptr<DeformationLimit> limit_;
   std::unique_ptr<BackwardEuler> backward_euler_;
 };

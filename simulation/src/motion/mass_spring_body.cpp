@@ -99,6 +99,10 @@ EdgeStrain MassSpringBody::edge_strain() const {
   return implementation_->masses.edge_strain();
 }
 
+std::optional<std::array<Vec3d, 2>> MassSpringBody::bounds() const {
+  return implementation_->masses.bounds();
+}
+
 std::vector<MassSpringBody::Spring> MassSpringBody::springs() const {
   return implementation_->masses.springs();
 }

@@ -132,6 +132,21 @@ EdgeStrain MassSpring::edge_strain() const {
   return strain;
 }
 
+std::optional<std::array<Vec3d, 2>> MassSpring::bounds() const {
+  const auto is_inert = [](VertexKind kind) { return kind == VertexKind::inert; };
+  if (kinds_.empty() || std::any_of(kinds_.begin(), kinds_.end(), is_inert)) return std::nullopt;
+  Bounds bounds;
+  if (has_bounds_) {
+    for (const Bounds& block : block_bounds_) bounds.add(block.low, block.high);
+  } else {
+    for (const Vec3d& position : now_.positions) {
+      if (!is_finite(position)) return std::nullopt;
+      bounds.add(position, position);
+    }
+  }
+  return std::array{bounds.low, bounds.high};
+}
+
 std::vector<MassSpringBody::Spring> MassSpring::springs() const {
   std::vector<MassSpringBody::Spring> springs;
   springs.reserve(network_.edges.elements.size());

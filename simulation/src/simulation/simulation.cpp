@@ -27,6 +27,8 @@ const SimulationOptions& checked(const SimulationOptions& options) {
   check(options);
   if (options.border) check_border(*options.border);
   if (options.response) check(*options.response);
+  if (options.fused_refit && !options.scene.comparison.lazy_refit)
+    fail("SimulationOptions: fused_refit has no effect when all nodes are refitted; set lazy_refit, too");
   return options;
 }
 
@@ -158,7 +160,7 @@ void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3
 const DetectResult& Simulation::Implementation::detect(const DetectRequest& request) {
   for (const auto& object : objects_) {
     if (object == nullptr || !object->is_on_path) continue;
-    scene.set_positions(object->id, object->positions());
+    set_positions_in_scene(*object);
     object->is_on_path = false;
   }
   has_current_result_ = true;
@@ -316,9 +318,17 @@ void Simulation::Implementation::place_in_scene() {
     } else if (object->rigid_body && !response_) {
       object->rigid_body->place(scene, object->id);
     } else {
-      scene.set_positions(object->id, object->positions());
+      set_positions_in_scene(*object);
     }
   }
+}
+
+void Simulation::Implementation::set_positions_in_scene(const SimulatedObject& object) {
+  if (options.fused_refit && object.moving_body != nullptr) {
+    if (const auto bounds = object.moving_body->body.bounds())
+      return scene.set_positions(object.id, object.positions(), *bounds);
+  }
+  scene.set_positions(object.id, object.positions());
 }
 
 void Simulation::Implementation::prepare_next_step() {

@@ -75,6 +75,7 @@ class Simulation::Implementation {
   bool may_respond(ObjectId a, ObjectId b) const;
   void accept_written_positions();
   void place_in_scene();
+  void set_positions_in_scene(const SimulatedObject& object);
   void prepare_next_step();
   bool needs_paths() const { return is_continuous() || response_; }
   bool is_continuous() const { return contains(options.scene.contacts, ContactKinds::continuous); }

@@ -21,6 +21,10 @@ bool Detection::run(const Question& question, std::uint64_t max_contacts, const 
   stats.object_pairs = pairs_.pairs().size();
   stats.broad_phase_seconds = stage.lap();
   if (stop.stop_requested()) return false;
+  if (question_.shapes().lazy) {
+    stats.triangles_refitted += world_.refit_where_objects_meet(pairs_.jobs());
+    stats.refit_seconds += stage.lap();
+  }
   check_exact_bits();
   const World::Work rebuilt = world_.rebuild_degraded(pairs_.jobs(), pairs_.boxes());
   stats.octrees_rebuilt = rebuilt.objects;

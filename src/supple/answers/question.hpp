@@ -17,6 +17,7 @@ struct Question {
   ProximityListing proximity_listing = ProximityListing::features;
   bool contact_points = false;
   bool colliding_vertices = false;
+  bool lazy_refit = false;
   bool manifolds = false;
   PenetrationDepths depths = PenetrationDepths::all;
   std::optional<StepOptions> safe_step{};  ///< continuous contacts: for a safe step
@@ -31,7 +32,9 @@ struct Question {
   /// It searches intersections, or only counts their candidates.
   bool searches_at_rest() const { return contacts == ContactKinds::none || has_intersections(); }
   SearchedShapes shapes() const {
+    const bool only_intersections = with_included(contacts) == ContactKinds::intersection;
     return {searches_at_rest(), is_continuous(), has_proximity(),
+            lazy_refit && (contacts == ContactKinds::none || only_intersections),
             // Colliding vertices and separations need all overlapping leaves, so nothing may be culled.
             searches_at_rest() && !colliding_vertices, is_continuous() && impact.impact.min_separation == 0};
   }

@@ -22,6 +22,13 @@ void refuse(const SceneOctreeOptions& options, const char* method) {
 std::unique_ptr<PairSearch> make_search(BroadPhaseMethod method, BoundingVolume bounding_volume,
                                         const SceneOctreeOptions& options) {
   check(options);
+  if (options.expand_for_large_objects && (options.max_level == 0 || options.max_level > most_full_levels)) {
+    fail(
+        "broad phase: the scene octree expands for large objects down to its deepest level, so max_level "
+        "must "
+        "be from 1 to " +
+        std::to_string(most_full_levels) + "; it is " + std::to_string(options.max_level));
+  }
   switch (method) {
     case BroadPhaseMethod::automatic:
       return std::make_unique<AutomaticSearch>(bounding_volume, options);

@@ -174,13 +174,15 @@ void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&
 
 }  // namespace
 
-/// Throws an error unless the object is as in the last `detect`.
+/// Throws an error unless the object is as in the last `detect`. All of its nodes are refitted.
 const WorldObject& Inspection::refitted_object(ObjectId id, const char* call) const {
-  const WorldObject& asked = world_.object(id, call);
+  WorldObject& asked = world_.object(id, call);
   if (asked.has_moved() || asked.needs_refit(question().shapes())) {
     fail(std::string(call) + ": " + asked.options.name +
          " was moved since anything was detected; call detect first");
   }
+  SearchedShapes shapes = question().shapes();
+  if (std::exchange(shapes.lazy, false)) asked.update(shapes, world_.parallel);
   return asked;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "narrow_phase/traversal.hpp"
+#include "octree/octree_topology.hpp"
 #include "octree/volumes/moving_boxes.hpp"
 #include "supple/types.hpp"
 
@@ -57,6 +58,11 @@ inline std::uint32_t cell_level(const OctreeView& view, std::uint32_t node) {
 inline std::optional<std::uint64_t> cell_number(const OctreeView& view, std::uint64_t arity,
                                                 std::uint32_t node, int child) {
   if (is_one_leaf(view)) return 0;
+  if (!view.cell_numbers.empty()) {
+    const std::uint64_t number =
+        view.cell_numbers[std::size_t{node} * node_width + static_cast<std::size_t>(child)];
+    return number == no_number ? std::nullopt : std::optional(number);
+  }
   const OctreeNode& of = view.nodes[node];
   const auto parent = node == 0 ? 0 : cell_number(view, arity, of.parent, of.index_in_parent);
   constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();

@@ -70,14 +70,6 @@ void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const ChildBoxes*
   }
 }
 
-HWY_INLINE Aabb placed(Aabb box, const RelativePlacement& placement) {
-  for (int axis = 0; axis < 3; ++axis) {
-    box.min[axis] += placement.offset[axis] - placement.slop;
-    box.max[axis] += placement.offset[axis] + placement.slop;
-  }
-  return box;
-}
-
 using BoxTag = hn::CappedTag<float, 16>;
 using NumberTag = hn::Rebind<std::uint32_t, BoxTag>;
 using BoxVec = hn::Vec<BoxTag>;

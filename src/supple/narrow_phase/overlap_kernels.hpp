@@ -26,6 +26,14 @@ struct RelativePlacement {
 
   bool is_identity() const { return offset == Vec3f{} && slop == 0; }
 };
+/// The box of an object b, moved and grown.
+inline Aabb placed(Aabb box, const RelativePlacement& placement) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] += placement.offset[axis] - placement.slop;
+    box.max[axis] += placement.offset[axis] + placement.slop;
+  }
+  return box;
+}
 
 /// Triangles of two leaves whose volumes overlap, in octree order: [begin_a, end_a) against [begin_b, end_b).
 /// A leaf against itself has equal ranges. `leaf_a` and `leaf_b` are eight times the node plus the child.

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/float_rounding.hpp"
+#include "geometry/sphere.hpp"
 #include "narrow_phase/volume_kernels.hpp"
 
 namespace supple {
@@ -55,7 +56,64 @@ std::uint64_t masks_of_near_children(const ObjectPairView& pair, const NodePair&
   return mask;
 }
 
-void test_children(const ObjectPairView& pair, std::span<const NodePair> node_pairs, std::uint64_t* masks) {
+/// Whether a child of object a overlaps a child of object b. The comparisons are those of `overlap_masks`.
+bool children_overlap(const ObjectPairView& pair, std::uint32_t node_a, int child_a, std::uint32_t node_b,
+                      int child_b) {
+  if (pair.a.spheres != nullptr) {
+    return overlap(child_sphere(pair.a.spheres[node_a], child_a),
+                   child_sphere(pair.b.spheres[node_b], child_b), pair.placement.offset, pair.placement.slop);
+  }
+  return overlap(child_box(pair.a.boxes[node_a], child_a),
+                 placed(child_box(pair.b.boxes[node_b], child_b), pair.placement));
+}
+
+/// The same for a child of object a and a whole node of object b.
+bool child_overlaps_node(const ObjectPairView& pair, std::uint32_t node_a, int child_a,
+                         std::uint32_t node_b) {
+  const OctreeNode& node = pair.b.nodes[node_b];
+  if (node_b != 0) return children_overlap(pair, node_a, child_a, node.parent, node.index_in_parent);
+  if (pair.a.spheres != nullptr) {
+    return overlap(child_sphere(pair.a.spheres[node_a], child_a), pair.b.sphere, pair.placement.offset,
+                   pair.placement.slop);
+  }
+  return overlap(child_box(pair.a.boxes[node_a], child_a), placed(pair.b.box, pair.placement));
+}
+
+/// One pair of nodes in the order of the paper's Figure 4. A node that is restricted to one child stands for
+/// this leaf, which has no children. Adds the number of tests.
+std::uint64_t mask_one_side_first(const ObjectPairView& pair, const NodePair& nodes, std::uint64_t& tests) {
+  const std::uint32_t children_a = nodes.children_a & pair.a.nodes[nodes.a].child_mask(),
+                      children_b = nodes.children_b & pair.b.nodes[nodes.b].child_mask();
+  const bool is_leaf_a = bit_count(nodes.children_a) == 1, is_leaf_b = bit_count(nodes.children_b) == 1;
+  std::uint64_t mask = 0;
+  for (int i = 0; i < node_width; ++i) {
+    if ((children_a >> i & 1) == 0) continue;
+    if (!is_leaf_a && !is_leaf_b) {
+      ++tests;
+      if (!child_overlaps_node(pair, nodes.a, i, nodes.b)) continue;
+    }
+    for (int j = 0; j < node_width; ++j) {
+      if ((children_b >> j & 1) == 0) continue;
+      ++tests;
+      mask |= std::uint64_t{children_overlap(pair, nodes.a, i, nodes.b, j)} << (node_width * i + j);
+    }
+  }
+  return mask;
+}
+
+/// Returns the number of tests.
+std::uint64_t test_children(const ObjectPairView& pair, std::span<const NodePair> node_pairs,
+                            std::uint64_t* masks) {
+  std::uint64_t tests = 0;
+  if (!pair.is_moving() && pair.a.descent == Descent::one_side_first) {
+    for (std::size_t k = 0; k < node_pairs.size(); ++k)
+      masks[k] = mask_one_side_first(pair, node_pairs[k], tests);
+    return tests;
+  }
+  for (const NodePair& nodes : node_pairs) {
+    tests += std::uint64_t{bit_count(nodes.children_a & pair.a.nodes[nodes.a].child_mask())} *
+             bit_count(nodes.children_b & pair.b.nodes[nodes.b].child_mask());
+  }
   if (pair.is_moving() && pair.kept_share > 0) {
     for (std::size_t k = 0; k < node_pairs.size(); ++k)
       masks[k] = masks_of_near_children(pair, node_pairs[k]);
@@ -67,6 +125,7 @@ void test_children(const ObjectPairView& pair, std::span<const NodePair> node_pa
     overlap_masks(node_pairs, pair.a.boxes, pair.b.boxes, pair.placement, masks);
     separate_volumes(node_pairs, pair.a.volumes, pair.b.volumes, pair.placement, masks);
   }
+  return tests;
 }
 
 /// Bit i to the bits of byte i.
@@ -138,12 +197,14 @@ OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
                    std::span<const std::uint8_t> inert, Vec3d translation) {
   OctreeView view;
   view.nodes = octree.nodes();
+  view.cell_numbers = octree.cell_numbers();
   view.boxes = octree.boxes();
   view.spheres = octree.spheres();
   view.volumes = octree.volumes();
   view.leaf_vertices = octree.leaf_vertices();
   view.arrays = arrays_of(octree.triangles(), vertices, inert);
   view.box = octree.box();
+  view.sphere = octree.sphere();
   view.translation = translation;
   return view;
 }
@@ -152,6 +213,7 @@ OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& ele
                           const MovingBoxes& boxes, Vec3d translation) {
   OctreeView view;
   view.nodes = octree.nodes();
+  view.cell_numbers = octree.cell_numbers();
   view.box = boxes.swept_box();
   view.translation = translation;
   view.moving = boxes.view(elements);
@@ -271,14 +333,12 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
   const std::size_t count = std::min(node_batch, stack_.size());
   std::copy(stack_.end() - static_cast<std::ptrdiff_t>(count), stack_.end(), batch_.begin());
   stack_.resize(stack_.size() - count);
-  test_children(pair, {batch_.data(), count}, masks_.data());
+  stats.volumes_tested += test_children(pair, {batch_.data(), count}, masks_.data());
   stats.node_pairs_visited += count;
   for (std::size_t k = 0; k < count; ++k) {
     const NodePair node_pair = batch_[k];
     const OctreeNode& node_a = pair.a.nodes[node_pair.a];
     const OctreeNode& node_b = pair.b.nodes[node_pair.b];
-    stats.volumes_tested += std::uint64_t{bit_count(node_pair.children_a & node_a.child_mask())} *
-                            bit_count(node_pair.children_b & node_b.child_mask());
     for_each_child_pair(pair, node_pair, masks_[k], [&](int i, int j) {
       if (const auto below = nodes_below(pair, {node_pair.a, node_pair.b, i, j})) {
         stack_.push_back(*below);

@@ -20,13 +20,16 @@ namespace supple {
 /// The data of one object for the narrow phase; borrowed for the call.
 struct OctreeView {
   std::span<const OctreeNode> nodes;
+  std::span<const std::uint64_t> cell_numbers;  ///< `OctreeTopology::numbers`
   const ChildBoxes* boxes = nullptr;
   const ChildSpheres* spheres = nullptr;  ///< null: the boxes are the volumes
   NodeVolumesView volumes;                ///< tested where boxes overlap, if it is not empty
   TriangleArrays arrays;
   LeafVertexArrays leaf_vertices;
-  Aabb box;           ///< of all positions
-  Vec3d translation;  ///< added to each position
+  Aabb box;  ///< of all positions
+  BoundingSphere sphere;
+  Descent descent = Descent::both_sides;  ///< of objects at rest
+  Vec3d translation;                      ///< added to each position
   /// Boxes of the ways of the vertices in each child, for `ObjectPairView::kept_share`; null at rest.
   const ChildBoxes* ways = nullptr;
   MovingView moving;  ///< for moving objects, which do not use `arrays` and `leaf_vertices`

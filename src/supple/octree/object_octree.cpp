@@ -52,6 +52,26 @@ OctreeTopology build_topology(const PositionsView& positions, std::span<const Tr
   }
 }
 
+/// The bounds of finite points, rounded outward once.
+struct PointBounds {
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  Vec3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+
+  void add(const Vec3d& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
+    }
+  }
+  Aabb box() const {
+    Aabb box;
+    if (!(low.x <= high.x)) return box;
+    extend(box, low);
+    extend(box, high);
+    return box;
+  }
+};
+
 void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {
   spheres.x[child] = sphere.center.x;
   spheres.y[child] = sphere.center.y;
@@ -78,6 +98,7 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   nodes_ = std::move(topology.nodes);
   nodes_.shrink_to_fit();
   level_begin_ = std::move(topology.level_begin);
+  cell_numbers_ = std::move(topology.numbers);
   triangle_ids_ = std::move(topology.order);
   boxes_.resize(nodes_.size());
   if (bounding_volume == BoundingVolume::sphere) spheres_.resize(nodes_.size());
@@ -176,6 +197,7 @@ bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint
     if (all_finite) volumes_.refit(nodes_, boxes_.data(), surface, leaf_vertices(), begin, end);
   });
   if (all_finite && !nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface, leaf_vertices());
+  box_ = nodes_.empty() ? Aabb{} : enclosing_box(boxes_[0]);
   sphere_ = BoundingSphere{};
   if (all_finite && !spheres_.empty()) sphere_ = sphere_fitter(vertices, inert).sphere_of_object(box());
   return all_finite;
@@ -217,6 +239,7 @@ std::optional<std::size_t> ObjectOctree::refit_moved(const VertexBuffer& vertice
     }
   }
   if (!all_finite) return std::nullopt;
+  if (!stale_nodes_.empty()) box_ = enclosing_box(boxes_[0]);
   if (!stale_nodes_.empty() && !spheres_.empty()) sphere_ = fitter.sphere_of_object(box());
   if (!stale_nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface, leaf_vertices());
   return triangles;
@@ -247,9 +270,46 @@ void ObjectOctree::list_nodes_of_vertices() {
       [&](std::uint32_t vertex, std::uint32_t n) { nodes_of_vertices_[next[vertex]++] = n; });
 }
 
-SphereFitter ObjectOctree::sphere_fitter(const VertexBuffer& vertices,
-                                         std::span<const std::uint8_t> inert) const {
-  return {sphere_fit_, nodes_, spheres_.data(), leaf_vertices(), triangles_, vertices, inert};
+bool ObjectOctree::refit_object(const VertexBuffer& vertices, const std::optional<Aabb>& box) {
+  if (nodes_.empty()) return true;
+  is_current_.assign(nodes_.size(), 0);
+  PointBounds bounds;
+  bool all_finite = true;
+  const auto add = [&](std::uint32_t vertex) {
+    const Vec3d p = vertices[vertex];
+    all_finite = all_finite && is_finite(p);
+    bounds.add(p);
+  };
+  if (!unused_vertices_.empty()) {
+    for (const Triangle& triangle : triangles_) std::for_each(triangle.begin(), triangle.end(), add);
+    for (const std::uint32_t vertex : unused_vertices_)
+      all_finite = all_finite && is_finite(vertices[vertex]);
+  } else if (!box) {
+    for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) add(vertex);
+  }
+  box_ = box && unused_vertices_.empty() ? *box : bounds.box();
+  if (all_finite && !spheres_.empty()) sphere_ = sphere_fitter(vertices, {}, false).sphere_of_object(box_);
+  return all_finite;
+}
+
+std::size_t ObjectOctree::refit_children(std::uint32_t n, const VertexBuffer& vertices) {
+  if (std::exchange(is_current_[n], std::uint8_t{1}) != 0) return 0;
+  const OctreeNode& node = nodes_[n];
+  for (int child = 0; child < node_width; ++child) {
+    PointBounds bounds;
+    for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
+      for (const std::uint32_t vertex : triangles_[t]) bounds.add(vertices[vertex]);
+    }
+    set_child_box(boxes_[n], child, bounds.box());
+  }
+  if (!spheres_.empty()) refit_spheres(n, n + 1, sphere_fitter(vertices, {}, false));
+  return node.size();
+}
+
+SphereFitter ObjectOctree::sphere_fitter(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
+                                         bool are_nodes_current) const {
+  return {sphere_fit_, nodes_,   spheres_.data(), leaf_vertices(),
+          triangles_,  vertices, inert,           are_nodes_current};
 }
 
 void ObjectOctree::refit_spheres(std::uint32_t node_begin, std::uint32_t node_end,

@@ -47,6 +47,8 @@ class ObjectOctree {
                const Parallel& parallel = Parallel(1));
 
   std::span<const OctreeNode> nodes() const { return nodes_; }
+  /// `OctreeTopology::numbers`.
+  std::span<const std::uint64_t> cell_numbers() const { return cell_numbers_; }
   const ChildBoxes* boxes() const { return boxes_.data(); }
   /// Null unless the bounding volume is the sphere.
   const ChildSpheres* spheres() const { return spheres_.empty() ? nullptr : spheres_.data(); }
@@ -98,11 +100,20 @@ class ObjectOctree {
   std::optional<std::size_t> refit_moved(const VertexBuffer& vertices, std::span<const std::uint32_t> moved,
                                          const Parallel& parallel);
 
+  /// Computes the volume of the whole object alone; the volumes of nodes are out of date until
+  /// `refit_children` computes them. `box`, if any, encloses all vertices, which are then finite. O(n), or
+  /// O(1) for a box that is given and no sphere. Returns false when a vertex is not finite; then the volumes
+  /// are invalid.
+  bool refit_object(const VertexBuffer& vertices, const std::optional<Aabb>& box);
+  /// After `refit_object`: computes the volumes of the children of a node from the vertices below, unless it
+  /// has. Returns the number of triangles that it read.
+  std::size_t refit_children(std::uint32_t node, const VertexBuffer& vertices);
+
   /// The octree of the same triangles and options, built from other positions. O(n log n).
   ObjectOctree rebuilt(const PositionsView& positions, const Parallel& parallel = Parallel(1)) const;
 
   /// Volumes of the whole object at the last refit; empty when it has no finite triangle.
-  Aabb box() const { return nodes_.empty() ? Aabb{} : enclosing_box(boxes_[0]); }
+  const Aabb& box() const { return box_; }
   const BoundingSphere& sphere() const { return sphere_; }
 
   /// The empty string when every invariant holds and every volume encloses its triangles; otherwise what is
@@ -114,14 +125,16 @@ class ObjectOctree {
   void list_leaf_vertices(const Parallel& parallel);
   void list_nodes_of_vertices();
   void mark_with_ancestors(std::uint32_t node);
-  SphereFitter sphere_fitter(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const;
+  SphereFitter sphere_fitter(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
+                             bool are_nodes_current = true) const;
   void refit_spheres(std::uint32_t node_begin, std::uint32_t node_end, const SphereFitter& fitter);
 
   std::vector<OctreeNode> nodes_;
   std::vector<ChildBoxes> boxes_;
   std::vector<ChildSpheres> spheres_;
   NodeVolumes volumes_;
-  std::vector<std::uint32_t> level_begin_;  // `OctreeTopology::level_begin`
+  std::vector<std::uint32_t> level_begin_;   // `OctreeTopology::level_begin`
+  std::vector<std::uint64_t> cell_numbers_;  // `OctreeTopology::numbers`
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> triangle_ids_, triangle_order_;
   std::size_t vertex_count_;
@@ -132,9 +145,11 @@ class ObjectOctree {
   // up to `nodes_of_vertices_[first_node_[v + 1]]`, and the nodes to refit with a byte for each node.
   std::vector<std::uint32_t> first_node_, nodes_of_vertices_, stale_nodes_;
   std::vector<std::uint8_t> is_stale_;
+  std::vector<std::uint8_t> is_current_;  // by node, since `refit_object`
   ObjectOctreeOptions options_;
   BoundingVolume bounding_volume_;
   SphereFit sphere_fit_;
+  Aabb box_;
   BoundingSphere sphere_;
 };
 

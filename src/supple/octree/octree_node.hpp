@@ -31,6 +31,15 @@ inline Aabb child_box(const ChildBoxes& boxes, int child) {
           {boxes.max_x[child], boxes.max_y[child], boxes.max_z[child]}};
 }
 
+inline void set_child_box(ChildBoxes& boxes, int child, const Aabb& box) {
+  boxes.min_x[child] = box.min.x;
+  boxes.min_y[child] = box.min.y;
+  boxes.min_z[child] = box.min.z;
+  boxes.max_x[child] = box.max.x;
+  boxes.max_y[child] = box.max.y;
+  boxes.max_z[child] = box.max.z;
+}
+
 /// The box around all children.
 inline Aabb enclosing_box(const ChildBoxes& boxes) {
   Aabb box = child_box(boxes, 0);

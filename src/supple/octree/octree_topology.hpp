@@ -19,7 +19,12 @@ struct OctreeTopology {
   std::vector<OctreeNode> nodes;           ///< level by level; empty when there are no triangles
   std::vector<std::uint32_t> order;        ///< triangle at each place of the octree's order
   std::vector<std::uint32_t> level_begin;  ///< first node of each level, then the number of nodes
+  /// In a regular octree, the number of the octant of child i of node n at 8 n + i (`OctreeCell::number`), or
+  /// `no_number`.
+  std::vector<std::uint64_t> numbers;
 };
+
+constexpr std::uint64_t no_number = std::numeric_limits<std::uint64_t>::max();
 
 constexpr int bits_per_level(std::uint32_t arity) {
   return arity == 8 ? 3 : arity == 4 ? 2 : 1;
@@ -41,16 +46,20 @@ struct TriangleRange {
 struct NodeDivision {
   TriangleRange range{};
   std::array<TriangleRange, node_width> children{};
+  std::array<std::uint64_t, node_width> numbers{};  // of the octants of the children, in a regular octree
   std::uint32_t child_count = 0;
 
-  void push_child(TriangleRange child) { children[child_count++] = child; }
+  void push_child(TriangleRange child, std::uint64_t number = 0) {
+    numbers[child_count] = number;
+    children[child_count++] = child;
+  }
 };
 
 /// Makes all nodes from the root down, level by level. The splitter decides the order of the triangles:
 /// - `should_split(range, level)` returns whether the range becomes a node, not a leaf. It may reorder the
 ///   range.
 /// - `split(nodes, level)` gives each `NodeDivision` of the level two to eight children that cover its range.
-///   It may reorder the ranges.
+///   It may reorder the ranges. A splitter that `has_numbers` also gives the numbers of the children.
 /// - `finish(leaves)` may reorder the triangles of each leaf. It returns the triangles in their order.
 template <class Splitter>
 OctreeTopology build_octree(std::uint32_t triangle_count, Splitter splitter) {
@@ -95,6 +104,8 @@ OctreeTopology build_octree(std::uint32_t triangle_count, Splitter splitter) {
       std::fill(node.first_triangle + node.child_count, node.first_triangle + node_width + 1,
                 division.range.end);
       topology.nodes[n] = node;
+      if constexpr (requires { Splitter::has_numbers; })
+        topology.numbers.insert(topology.numbers.end(), division.numbers.begin(), division.numbers.end());
     }
     begin = end;
   }

@@ -35,21 +35,14 @@ HWY_INLINE void refit_bottom_up(const OctreeNode* nodes, std::uint32_t begin, st
 /// Sets the boxes of all children of an octree. `box_of_leaf(node, child)` computes the box of a leaf.
 template <class BoxOfLeaf>
 void refit_child_boxes(std::span<const OctreeNode> nodes, ChildBoxes* boxes, const BoxOfLeaf& box_of_leaf) {
-  const auto set_child_box = [&](std::uint32_t n, int child, const Aabb& box) {
-    boxes[n].min_x[child] = box.min.x;
-    boxes[n].min_y[child] = box.min.y;
-    boxes[n].min_z[child] = box.min.z;
-    boxes[n].max_x[child] = box.max.x;
-    boxes[n].max_y[child] = box.max.y;
-    boxes[n].max_z[child] = box.max.z;
-  };
   refit_bottom_up(
       nodes.data(), 0, static_cast<std::uint32_t>(nodes.size()),
-      [&](std::uint32_t n, int child) { set_child_box(n, child, box_of_leaf(nodes[n], child)); },
+      [&](std::uint32_t n, int child) { set_child_box(boxes[n], child, box_of_leaf(nodes[n], child)); },
       [&](std::uint32_t n) {
-        for (int child = nodes[n].child_count; child < node_width; ++child) set_child_box(n, child, {});
+        for (int child = nodes[n].child_count; child < node_width; ++child)
+          set_child_box(boxes[n], child, {});
         if (nodes[n].parent != n)
-          set_child_box(nodes[n].parent, nodes[n].index_in_parent, enclosing_box(boxes[n]));
+          set_child_box(boxes[nodes[n].parent], nodes[n].index_in_parent, enclosing_box(boxes[n]));
       });
 }
 

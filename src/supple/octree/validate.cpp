@@ -158,7 +158,8 @@ OctreeStatistics ObjectOctree::statistics() const {
                   first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity() +
                   first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity()) *
                      sizeof(std::uint32_t) +
-                 leaf_corners_.capacity() + is_stale_.capacity();
+                 cell_numbers_.capacity() * sizeof(std::uint64_t) + leaf_corners_.capacity() +
+                 is_stale_.capacity() + is_current_.capacity();
   if (result.triangles > 0) {
     result.bytes_per_triangle = static_cast<double>(result.bytes) / static_cast<double>(result.triangles);
   }

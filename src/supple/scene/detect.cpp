@@ -34,6 +34,7 @@ Question Scene::Implementation::question_of(const DetectRequest& request) const 
       .proximity_listing = request.proximity_listing.value_or(options.proximity_listing),
       .contact_points = options.contact_points,
       .colliding_vertices = options.comparison.colliding_vertices,
+      .lazy_refit = options.comparison.lazy_refit,
       .manifolds = request.manifolds.value_or(options.manifolds),
       .depths = request.depths.value_or(options.depths)};
   if (request.manifolds.value_or(false)) check_manifolds(question);

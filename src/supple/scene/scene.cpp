@@ -62,6 +62,11 @@ void Scene::remove(ObjectId object) {
 void Scene::set_positions(ObjectId object, PositionsView positions) {
   implementation_->world.set_positions(object, positions);
 }
+
+void Scene::set_positions(ObjectId object, PositionsView positions, const std::array<Vec3d, 2>& bounds) {
+  for (const Vec3d& corner : bounds) check_finite(corner, "set_positions", "bounds");
+  implementation_->world.set_positions(object, positions, &bounds);
+}
 void Scene::set_vertices(ObjectId object, std::span<const std::uint32_t> vertices, PositionsView positions) {
   implementation_->world.set_vertices(object, vertices, positions);
 }

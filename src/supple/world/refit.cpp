@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "geometry/aabb.hpp"
+#include "narrow_phase/traversal.hpp"
 #include "world/world.hpp"
 
 namespace supple {
@@ -52,6 +53,28 @@ World::Work World::refit(const SearchedShapes& shapes) {
                   [&](WorldObject& object, const Parallel& workers) { object.update(shapes, workers); });
   for (const std::uint32_t slot : stale_) work.triangles += slots_[slot].object->refitted_triangles();
   return work;
+}
+
+std::uint64_t World::refit_where_objects_meet(std::span<const ContactJob> jobs) {
+  std::uint64_t triangles = 0;
+  std::vector<NodePair> nodes;
+  std::vector<ChildPair> children;
+  for (const ContactJob& job : jobs) {
+    WorldObject &a = *slots_[job.a].object, &b = *slots_[job.b].object;
+    if (job.a == job.b || a.octree().nodes().empty() || b.octree().nodes().empty()) continue;
+    const ObjectPairView pair = pair_of(a.resting_view(), b.resting_view());
+    for (nodes.assign(1, {}); !nodes.empty();) {
+      const NodePair at = nodes.back();
+      nodes.pop_back();
+      triangles += a.update_children(at.a) + b.update_children(at.b);
+      children.clear();
+      find_overlapping_children(pair, at, children);
+      for (const ChildPair& both : children) {
+        if (const auto below = nodes_below(pair, both)) nodes.push_back(*below);
+      }
+    }
+  }
+  return triangles;
 }
 
 /// Counts the queries of each octree. Jobs of objects that did not move search nothing. A query of another

@@ -16,6 +16,14 @@ std::string described(ObjectId id) {
 
 SceneOptions checked(SceneOptions options) {
   check(options);
+  const bool has_other_volumes =
+      options.bounding_volume != BoundingVolume::aabb && options.bounding_volume != BoundingVolume::sphere;
+  if (has_other_volumes &&
+      (options.comparison.lazy_refit || options.comparison.descent != Descent::both_sides))
+    fail(
+        "SceneOptions: lazy_refit and the descent one_side_first need boxes or spheres; set bounding_volume "
+        "to "
+        "aabb or sphere");
   options.contacts = with_included(options.contacts);
   return options;
 }
@@ -95,10 +103,15 @@ ObjectPair World::two_objects(ObjectId a, ObjectId b, const char* call) const {
   return a < b ? ObjectPair{a, b} : ObjectPair{b, a};
 }
 
-void World::set_positions(ObjectId id, const PositionsView& positions) {
+void World::set_positions(ObjectId id, const PositionsView& positions, const std::array<Vec3d, 2>* bounds) {
   WorldObject& found = movable_object(id, "set_positions");
   check_count(found, positions.size(), "set_positions");
   found.move().set_positions(positions, parallel);
+  if (bounds != nullptr) {
+    Aabb box;
+    for (const Vec3d& corner : *bounds) extend(box, corner);
+    found.set_bounds(box);
+  }
   mark_changed();
 }
 

@@ -50,7 +50,9 @@ class World {
   /// Both objects, the smaller id first; throws an error when they are the same.
   ObjectPair two_objects(ObjectId a, ObjectId b, const char* call) const;
 
-  void set_positions(ObjectId id, const PositionsView& positions);
+  /// `bounds`, if any, are the lowest and highest coordinates of the positions, which are finite.
+  void set_positions(ObjectId id, const PositionsView& positions,
+                     const std::array<Vec3d, 2>* bounds = nullptr);
   void set_vertices(ObjectId id, std::span<const std::uint32_t> vertices, const PositionsView& positions);
   void share_positions(ObjectId id, const PositionsView& positions);
   void translate(ObjectId id, const Vec3d& offset);
@@ -83,6 +85,9 @@ class World {
   };
   /// Refits the objects that have moved, and those that lack one of the shapes.
   Work refit(const SearchedShapes& shapes);
+  /// After `refit` of lazy shapes: refits the nodes that a search of these jobs visits. Returns the number of
+  /// triangles that it read.
+  std::uint64_t refit_where_objects_meet(std::span<const ContactJob> jobs);
   /// Rebuilds degraded octrees where that pays, some in each call: the others wait. `jobs` are those of the
   /// search; jobs of objects that did not move search nothing. `boxes` are those of the slots. Views of
   /// rebuilt octrees are invalid afterwards.

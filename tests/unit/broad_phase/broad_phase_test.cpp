@@ -35,23 +35,38 @@ std::vector<IndexPair> find(BroadPhase& broad_phase, const std::vector<Volume>& 
 /// One set of options per method, and all variants of the octree.
 std::vector<BroadPhaseOptions> all_options() {
   std::vector<BroadPhaseOptions> all;
+  const auto octree = [](const SceneOctreeOptions& options) {
+    return BroadPhaseOptions{.method = BroadPhaseMethod::octree, .scene_octree = options, .threads = 1};
+  };
   for (const BroadPhaseMethod method : test::all_methods)
     all.push_back({.method = method, .scene_octree = {}, .threads = 1});
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 4u, 20u})
       for (const std::uint32_t expand_at : {0u, 2u, 9u})
-        all.push_back({BroadPhaseMethod::octree, {max_level, expand_at, test, 8, {}}, 1});
+        all.push_back(octree({.max_level = max_level, .expand_at = expand_at, .region_sphere_test = test}));
   for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
     for (const std::uint32_t max_level : {0u, 1u, 20u})
       for (const std::uint32_t arity : {2u, 4u})
-        all.push_back({BroadPhaseMethod::octree, {max_level, 2, test, arity, {}}, 1});
+        all.push_back(
+            octree({.max_level = max_level, .expand_at = 2, .region_sphere_test = test, .arity = arity}));
+  // The paper's Figure 2 to the letter.
+  for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
+    for (const std::uint32_t max_level : {1u, 2u, 4u})
+      for (const std::uint32_t min_level : {0u, 1u, 3u})
+        for (const std::uint32_t arity : {2u, 8u})
+          all.push_back(octree({.max_level = max_level,
+                                .expand_at = 2,
+                                .region_sphere_test = test,
+                                .expand_for_large_objects = true,
+                                .min_level = min_level,
+                                .arity = arity}));
   // Roots around many objects, around few, beside all, smaller and larger than all, and far away.
   for (const RootCube& root : {RootCube{{-10, -10, -10}, 20}, RootCube{{0, 0, 0}, 1},
                                RootCube{{1e6, 1e6, -1e6}, 3}, RootCube{{0.1, 0.2, 0.3}, 1e-30},
                                RootCube{{-1e36, -1e36, -1e36}, 1e36}, RootCube{{1e36, 0, 0}, 1e-30}})
     for (const RegionSphereTest test : {RegionSphereTest::arvo, RegionSphereTest::grown_box})
       for (const std::uint32_t arity : {2u, 8u})
-        all.push_back({BroadPhaseMethod::octree, {0, 2, test, arity, root}, 1});
+        all.push_back(octree({.expand_at = 2, .region_sphere_test = test, .arity = arity, .root = root}));
   return all;
 }
 

@@ -25,8 +25,8 @@ inline auto members_of(ObjectOctreeOptions& o) {
   return std::tie(a, b, c, d, e);
 }
 inline auto members_of(SceneOctreeOptions& o) {
-  auto& [a, b, c, d, e] = o;
-  return std::tie(a, b, c, d, e);
+  auto& [a, b, c, d, e, f, g] = o;
+  return std::tie(a, b, c, d, e, f, g);
 }
 /// Lists of vertices and data of the user have no description: programs set them, not files or command lines.
 inline auto members_of(ObjectOptions& o) {
@@ -34,8 +34,8 @@ inline auto members_of(ObjectOptions& o) {
   return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto members_of(ComparisonOptions& o) {
-  auto& [a, b] = o;
-  return std::tie(a, b);
+  auto& [a, b, c, d] = o;
+  return std::tie(a, b, c, d);
 }
 inline auto members_of(SceneOptions& o) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = o;
@@ -70,8 +70,8 @@ inline auto members_of(ContactResponse& o) {
   return std::tie(a, b, c, d);
 }
 inline auto members_of(SimulationOptions& o) {
-  auto& [a, b, c, d, e] = o;
-  return std::tie(a, b, c, d, e);
+  auto& [a, b, c, d, e, f] = o;
+  return std::tie(a, b, c, d, e, f);
 }
 inline auto members_of(StepStats& o) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w, x, y, z] = o;

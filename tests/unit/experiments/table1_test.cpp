@@ -195,7 +195,7 @@ TEST_F(Table1Folder, ResumeNeedsTheSameOptions) {
   error = error_of([&] { run(true); });
   EXPECT_NE(error.find("--integrator was not given"), std::string::npos) << error;
   options_ = tiny();
-  std::ofstream(folder_ / "table1_runs.csv", std::ios::app) << "table1_3,6,aabb,1,3,x,1,1,1,\n";
+  std::ofstream(folder_ / "table1_runs.csv", std::ios::app) << "table1_3,6,aabb,1,3,x,1,1,1,0,0,0,0,\n";
   EXPECT_NE(error_of([&] { run(true); }).find("row 5 is not a run"), std::string::npos);
 }
 
@@ -206,9 +206,40 @@ TEST_F(Table1Folder, TheClockCountsDetectionAlone) {
   ASSERT_TRUE(run(false));
   EXPECT_FALSE(fs::exists(folder_ / "table1_runs.csv"));
   for (const auto& row : rows("table1_clock_runs.csv")) {
-    const double detection = std::stod(row[8]), real = std::stod(row[9]);
+    const double detection = std::stod(row[8]), motion = std::stod(row[9]), real = std::stod(row[10]);
     EXPECT_GE(detection, 0.02);
-    EXPECT_GT(real, detection) << "the motion takes time that does not count";
+    EXPECT_GT(motion, 0);
+    EXPECT_GT(real, detection + motion);
+  }
+}
+
+TEST_F(Table1Folder, TheClockOfTheProgramCountsTheMotionToo) {
+  options_.simulated_seconds = 0;
+  options_.program_clock = 0.05;
+  options_.runs = 1;
+  ASSERT_TRUE(run(false));
+  EXPECT_FALSE(fs::exists(folder_ / "table1_clock_runs.csv"));
+  for (const auto& row : rows("table1_program_runs.csv")) {
+    const double detection = std::stod(row[8]), motion = std::stod(row[9]);
+    EXPECT_LT(detection, 0.05);
+    EXPECT_GE(detection + motion, 0.05);
+  }
+  const std::string whole = read("table1_program_runs.csv");
+  ASSERT_TRUE(run(true));
+  EXPECT_EQ(read("table1_program_runs.csv"), whole) << "nothing is repeated";
+}
+
+TEST_F(Table1Folder, RunsHaveTheStrainOfTheirBodies) {
+  options_.simulated_seconds = 4;
+  options_.runs = 1;
+  ASSERT_TRUE(run(false));
+  for (const auto& row : rows("table1_runs.csv")) {
+    const double mean = std::stod(row[9]), least = std::stod(row[10]), most = std::stod(row[11]),
+                 largest = std::stod(row[12]);
+    EXPECT_GT(mean, 0.02);
+    EXPECT_LT(least, most);
+    EXPECT_LT(most, largest);
+    EXPECT_LT(largest, 0.15);
   }
 }
 
@@ -221,7 +252,7 @@ Runs runs_of(std::uint32_t objects, BoundingVolume volume, const std::vector<std
 }
 
 Verdict verdict_on(const std::vector<Runs>& all, const std::string& part) {
-  for (const Claim& claim : judge_table1(all, {}))
+  for (const Claim& claim : judge_table1(all, {}, {}))
     if (claim.paper.find(part) != std::string::npos) return claim.verdict;
   ADD_FAILURE() << "no claim with " << part;
   return Verdict::cannot_tell;

@@ -130,8 +130,8 @@ TEST_F(DamagedRecording, UnchangedIsFine) {
 }
 
 TEST_F(DamagedRecording, OtherFormatsAndVersions) {
-  expect("version 4, supple", with_attribute("version", 4));
-  expect("or a newer one", with_attribute("version", 4));
+  expect("version 5, supple", with_attribute("version", 5));
+  expect("or a newer one", with_attribute("version", 5));
   expect("version 0, supple", with_attribute("version", 0));
   expect("attribute leaf_size is 0, not a whole number from 1 to 4294967295", [](hid_t file) {
     const hid_t object = H5Gopen2(file, "objects/0", H5P_DEFAULT);

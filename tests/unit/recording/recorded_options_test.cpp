@@ -94,7 +94,9 @@ void make_version_1(const std::filesystem::path& path, std::size_t objects) {
   rename_attribute(file, "/", "undecided", "exact_impacts");
   rename_attribute(file, "/", "contacts", "contact_mode");
   rename_attribute(file, "/", "region_test", "region_sphere_test");
-  H5Adelete(file, "scene_octree_arity");
+  for (const char* const name : {"scene_octree_arity", "scene_octree_expand_for_large",
+                                 "scene_octree_min_level", "descent", "lazy_refit"})
+    H5Adelete(file, name);
   for (std::size_t place = 0; place < objects; ++place) {
     const std::string group = "objects/" + std::to_string(place);
     rename_attribute(file, group.c_str(), "self", "self_collision");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -13,6 +14,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/trigonometry.hpp"
+#include "support/scenes.hpp"
 
 namespace supple {
 namespace {
@@ -567,6 +569,90 @@ TEST(Simulation, ReportsWhatTheUserWroteThatIsNotFinite) {
   ASSERT_EQ(reported.size(), 1u);
   EXPECT_EQ(reported[0].object, id);
   EXPECT_EQ(reported[0].vertex, 5u);
+}
+
+/// A body that changing forces bend stays at its speed and does not begin to spin.
+TEST(Simulation, ForcesThatChangeBendABodyWithoutMovingIt) {
+  Simulation simulation(in_a_room(1000, ContactKinds::none));
+  MassSpringMotion motion = springy();
+  motion.springs.area_stiffness = 200;
+  motion.random_speed = 0.5;
+  motion.random_force = 0.3;
+  motion.force_change_seconds = 0.4;
+  motion.deform_seconds = 0.2;
+  const ObjectId id = simulation.add(make_icosphere(3), {}, motion);
+  const MassSpringBody& body = *simulation.body(id);
+  const double size = norm(body.positions()[0] - body.center_of_mass());
+  double mean_strain = 0;
+  for (int step = 0; step < 2000; ++step) {
+    simulation.step();
+    mean_strain += body.edge_strain().mean / 2000;
+  }
+  EXPECT_GT(mean_strain, 0.01);
+  EXPECT_GT(body.edge_strain().mean, 0.005) << "it bends until the end";
+  EXPECT_NEAR(norm(body.mean_velocity()), 0.5, 1e-9);
+  const double mass = 0.1 * static_cast<double>(body.vertex_count());
+  const Vec3d spin = body.angular_momentum() - mass * cross(body.center_of_mass(), body.mean_velocity());
+  EXPECT_LT(norm(spin), 0.02 * mass * size * size) << "less than a fiftieth of a radian per second";
+}
+
+TEST(Simulation, BodiesKnowTheirBounds) {
+  const TriangleMesh mesh = make_torus(60, 40);  // two blocks of vertices
+  MassSpringOptions springs = springy().springs;
+  springs.substeps = 3;
+  MassSpringBody body(mesh, springs);
+  body.add_drift({1, 2, 3});
+  const auto check = [&] {
+    std::array<Vec3d, 2> expected{body.positions()[0], body.positions()[0]};
+    for (const Vec3d& p : body.positions()) {
+      for (int axis = 0; axis < 3; ++axis) {
+        expected[0][axis] = std::min(expected[0][axis], p[axis]);
+        expected[1][axis] = std::max(expected[1][axis], p[axis]);
+      }
+    }
+    EXPECT_EQ(body.bounds(), expected);
+  };
+  check();
+  for (int step = 0; step < 5; ++step) {
+    body.step(0.01);
+    check();
+  }
+  body.undo_step();
+  check();
+  body.set_positions(Points(mesh.positions.size(), Vec3d{1, 2, 3}));
+  check();
+  TriangleMesh broken = mesh;
+  broken.positions[7].x = not_a_number;
+  EXPECT_FALSE(MassSpringBody(broken, springs).bounds().has_value());
+}
+
+TEST(Simulation, FusedRefitFindsTheSame) {
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    SimulationOptions options = in_a_room(1.5);
+    options.scene.bounding_volume = volume;
+    options.scene.comparison.lazy_refit = true;
+    SimulationOptions fused_options = options;
+    fused_options.fused_refit = true;
+    Simulation plain(options), fused(fused_options);
+    for (const double x : {-0.5, 0.0, 0.5}) {
+      MassSpringMotion motion = springy();
+      motion.random_speed = 1;
+      motion.random_force = 0.2;
+      motion.force_change_seconds = 0.5;
+      const TriangleMesh mesh = placed(make_icosphere(3), 0.4, {x, 0, 0});
+      plain.add(mesh, {}, motion);
+      fused.add(mesh, {}, motion);
+    }
+    std::size_t contacts = 0;
+    for (int step = 0; step < 200; ++step) {
+      EXPECT_EQ(hash_of(fused.step()), hash_of(plain.step())) << step;
+      contacts += plain.scene().result().contacts.size();
+    }
+    EXPECT_GT(contacts, 100u);
+    options.scene.comparison.lazy_refit = false;
+    options.fused_refit = true;
+    EXPECT_THROW(Simulation{options}, Error);
+  }
 }
 
 }  // namespace

@@ -28,6 +28,8 @@ SceneOctree::SceneOctree(BoundingVolume bounding_volume, const SceneOctreeOption
     // The paper's test (is the centre in the grown region?) is the test of the box around the sphere.
     : by_sphere_(bounding_volume == BoundingVolume::sphere &&
                  options.region_sphere_test == RegionSphereTest::arvo),
+      divides_large_(options.expand_for_large_objects),
+      min_level_(options.min_level),
       max_level_(options.max_level),
       given_expand_at_(options.expand_at),
       arity_(options.arity),
@@ -89,7 +91,8 @@ std::uint32_t SceneOctree::chosen_expand_at() const {
 }
 
 bool SceneOctree::should_expand(const Region& region) const {
-  return region.divided >= expand_at_ && region.level < deepest_level_;
+  return region.level < deepest_level_ &&
+         (region.divided >= expand_at_ || (region.level < levels_of(min_level_) && object_count_ > 0));
 }
 
 void SceneOctree::make_root() {
@@ -178,8 +181,7 @@ void SceneOctree::build(const VolumeStore& volumes, const SceneCube& cube) {
   inverse_edge_ = 1.0 / cube.edge;
   const int useful_halvings = cube.finest_edge > 0 ? std::ilogb(cube.edge / cube.finest_edge) : 1;
   const int most_halvings = max_level_ != 0 ? static_cast<int>(max_level_) : most_halvings_allowed;
-  deepest_level_ =
-      static_cast<std::uint32_t>(std::clamp(useful_halvings, 1, most_halvings) * 3 / axes_per_level_);
+  deepest_level_ = levels_of(static_cast<std::uint32_t>(std::clamp(useful_halvings, 1, most_halvings)));
   make_root();
   object_count_ = 0;
   const auto boxes = volumes.boxes();

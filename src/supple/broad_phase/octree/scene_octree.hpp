@@ -29,8 +29,9 @@ namespace supple {
 /// A region divides an object when the object is no longer than the edge of the region's children. A region
 /// above `max_level` is expanded exactly when it divides at least `expand_at` of its objects. So an object
 /// that is large compared with a region never expands it, and a divided object touches at most eight regions
-/// of the next level. Thus each level has at most 8 n / expand_at groups, wherever the n objects are. The
-/// regions depend on the cube and the present volumes alone, not on earlier steps.
+/// of the next level. Thus each level has at most 8 n / expand_at groups, wherever the n objects are. With
+/// `expand_for_large_objects`, a region divides all of its objects, and down to `min_level` every region is
+/// expanded. The regions depend on the cube and the present volumes alone, not on earlier steps.
 ///
 /// A tree of arity 4 or 2 halves its regions along two axes or one, with x, y and z in turn. The bits of k
 /// belong to these axes in this order. Such a region is not a cube, and it divides an object that is no
@@ -101,7 +102,10 @@ class SceneOctree {
     return (static_cast<int>(level) * axes_per_level_ + turn) % 3;
   }
   bool divides(std::uint32_t level, std::uint8_t finest_level) const {
-    return finest_level >= halvings(0, level + 1);
+    return divides_large_ || finest_level >= halvings(0, level + 1);
+  }
+  std::uint32_t levels_of(std::uint32_t levels_of_eight) const {
+    return levels_of_eight * 3 / static_cast<std::uint32_t>(axes_per_level_);
   }
   std::uint8_t finest_level(const Aabb& box) const;
   std::uint32_t children_touched(const Region& region, const ObjectVolume& volume) const;
@@ -135,8 +139,8 @@ class SceneOctree {
                              std::span<const std::uint32_t> slots) const;
   std::uint32_t chosen_expand_at() const;
 
-  bool by_sphere_;
-  std::uint32_t max_level_, given_expand_at_;
+  bool by_sphere_, divides_large_;
+  std::uint32_t min_level_, max_level_, given_expand_at_;
   std::uint32_t expand_at_ = 2;
   std::uint32_t arity_;
   int axes_per_level_;

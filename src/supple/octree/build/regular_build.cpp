@@ -15,12 +15,15 @@ constexpr int bits_of_code = 3 * curve_bits_per_axis;
 
 class RegularSplitter {
  public:
+  static constexpr bool has_numbers = true;
+
   RegularSplitter(std::span<const Vec3d> centers, const ObjectOctreeOptions& options)
       : centers_(centers),
         leaf_size_(options.leaf_size),
         bits_per_level_(bits_per_level(options.arity)),
         deepest_(deepest_level(options)),
-        coded_(centers.size()) {
+        coded_(centers.size()),
+        is_coded_again_(centers.size(), false) {
     assert(options.arity == 2 || options.arity == 4 || options.arity == 8);
     for (std::uint32_t i = 0; i < coded_.size(); ++i) coded_[i] = {0, i};
     sort_along_curve(coded_, centers_);
@@ -31,6 +34,7 @@ class RegularSplitter {
     if (coded_[range.begin].code != coded_[range.end - 1].code) return true;
     // The codes are used up, but the centres may differ: the cube around them gives them new codes.
     sort_along_curve(std::span(coded_).subspan(range.begin, range.size()), centers_);
+    std::fill_n(is_coded_again_.begin() + range.begin, range.size(), true);
     return coded_[range.begin].code != coded_[range.end - 1].code;
   }
 
@@ -49,10 +53,21 @@ class RegularSplitter {
             std::partition_point(coded_.begin() + i, coded_.begin() + range.end,
                                  [&](const CurvePlace& c) { return c.code >> shift == octant; });
         const auto end = static_cast<std::uint32_t>(past - coded_.begin());
-        node.push_child({i, end});
+        node.push_child({i, end}, is_coded_again_[range.begin] ? no_number : number_of(level + 1, octant));
         i = end;
       }
     }
+  }
+
+  /// The number of the cell at the end of a path from the root, which are counted level by level.
+  std::uint64_t number_of(int level, std::uint64_t path) const {
+    const auto arity = std::uint64_t{1} << bits_per_level_;
+    std::uint64_t first = 0;
+    for (int k = 0; k < level; ++k) {
+      if (first > (no_number - 1 - path) / arity - 1) return no_number;
+      first = arity * first + 1;
+    }
+    return first + path;
   }
 
   std::vector<std::uint32_t> finish(std::span<const TriangleRange>) const {
@@ -68,6 +83,7 @@ class RegularSplitter {
   int bits_per_level_;
   std::uint32_t deepest_;  ///< level
   std::vector<CurvePlace> coded_;
+  std::vector<bool> is_coded_again_;  ///< the code does not begin at the root
 };
 
 }  // namespace

@@ -57,20 +57,24 @@ class FarthestVertex {
 
   void search_child(std::uint32_t n, int child) {
     const OctreeNode& node = octree_.nodes[n];
-    if (node.is_inner(child)) {
+    if (node.is_inner(child) && octree_.are_nodes_current) {
       search_node(node.child_node(child));
-    } else if (octree_.inert.empty()) {
+    } else if (!node.is_inner(child) && octree_.inert.empty()) {
       const std::uint32_t* const first = octree_.leaves.first + std::size_t{n} * node_width + child;
       for (std::uint32_t i = first[0]; i < first[1]; ++i) consider(octree_.leaves.vertices[i]);
     } else {
       for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
-        if (octree_.inert[t] != 0) continue;
+        if (!octree_.inert.empty() && octree_.inert[t] != 0) continue;
         for (const std::uint32_t vertex : octree_.triangles[t]) consider(vertex);
       }
     }
   }
 
   void search_node(std::uint32_t n) {
+    if (!octree_.are_nodes_current) {
+      for (int child = 0; child < octree_.nodes[n].child_count; ++child) search_child(n, child);
+      return;
+    }
     struct Reach {
       double most;  ///< bound of the distance
       int child;

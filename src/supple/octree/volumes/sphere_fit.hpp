@@ -32,6 +32,8 @@ struct SphereFitter {
   std::span<const Triangle> triangles;
   const VertexBuffer& vertices;
   std::span<const std::uint8_t> inert;  ///< a byte per triangle, or empty
+  /// False: the spheres of deeper nodes are out of date, so all vertices are searched.
+  bool are_nodes_current = true;
 
   /// The sphere of a child, whose box is `box`.
   BoundingSphere sphere_of_child(std::uint32_t node, int child, const Aabb& box) const;

@@ -27,6 +27,22 @@ std::size_t RestingShape::update(ObjectOctree& octree, Placement& placement, con
   return refit(octree, placement, parallel);
 }
 
+std::size_t RestingShape::update_object(ObjectOctree& octree, Placement& placement,
+                                        const std::optional<Aabb>& box, const Parallel& parallel) {
+  if (octree.triangles().size() != face_count_) return update(octree, placement, parallel);
+  while (!has_object(placement)) {
+    version_ = 0;
+    if (!octree.refit_object(placement.end(), box)) return update(octree, placement, parallel);
+    inert_.clear();
+    non_finite_.clear();
+    has_inert_faces_ = false;
+    object_version_ = placement.version();
+    placement.forget_moved();
+    if (placement.needs_baking(octree.box())) placement.bake(parallel);
+  }
+  return 0;
+}
+
 std::size_t RestingShape::refit(ObjectOctree& octree, Placement& placement, const Parallel& parallel) {
   const auto moved = placement.moved_since(version_);
   std::optional<std::size_t> refitted;
@@ -43,7 +59,7 @@ std::size_t RestingShape::refit(ObjectOctree& octree, Placement& placement, cons
 }
 
 void RestingShape::refit_all(ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
-  version_ = 0;  // until all is refitted, also when memory runs out on the way
+  version_ = object_version_ = 0;  // until all is refitted, also when memory runs out on the way
   inert_.clear();
   non_finite_.clear();
   has_inert_faces_ = false;

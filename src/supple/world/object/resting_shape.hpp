@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +28,17 @@ class RestingShape {
   /// Refits the octree, or only the part that moved since the last update, and bakes the translation if
   /// necessary. O(n). Returns the number of triangles in refitted leaves.
   std::size_t update(ObjectOctree& octree, Placement& placement, const Parallel& parallel);
+  /// As `update`, but only the volume of the whole object, where that is possible; then `update_children`
+  /// computes the volumes of nodes. `box`, if any, encloses the positions, which are finite.
+  std::size_t update_object(ObjectOctree& octree, Placement& placement, const std::optional<Aabb>& box,
+                            const Parallel& parallel);
+  bool has_object(const Placement& placement) const {
+    return is_current(placement) || object_version_ == placement.version();
+  }
+  /// The children of a node, after `update_object`. Returns the number of triangles that it read.
+  std::size_t update_children(ObjectOctree& octree, const Placement& placement, std::uint32_t node) const {
+    return is_current(placement) ? 0 : octree.refit_children(node, placement.end());
+  }
   void update_culling(const ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
     culling_.update(version_, octree, octree.triangles(), placement.end(), placement.end(), parallel);
   }
@@ -42,7 +54,7 @@ class RestingShape {
 
   /// Call after the octree was rebuilt.
   void forget_octree() {
-    version_ = 0;
+    version_ = object_version_ = 0;
     culling_.forget_octree();
   }
 
@@ -52,7 +64,8 @@ class RestingShape {
 
   std::uint32_t face_count_;
   std::uint64_t version_ = 0;
-  std::vector<std::uint8_t> inert_;  // `mark_inert`, or empty when there are no inert triangles
+  std::uint64_t object_version_ = 0;  // of the volume of the whole object, if that of the nodes is older
+  std::vector<std::uint8_t> inert_;   // `mark_inert`, or empty when there are no inert triangles
   bool has_inert_faces_ = false;
   std::vector<std::uint32_t> non_finite_;
   AdaptiveCulling culling_;

@@ -53,12 +53,13 @@ WorldObject::WorldObject(const PositionsView& positions, std::vector<Triangle> f
                          const SceneOptions& scene_options, const Parallel& parallel)
     : options(object_options),
       face_count_(static_cast<std::uint32_t>(faces.size())),
+      descent_(scene_options.comparison.descent),
       octree_(positions, with_extra(std::move(faces), extra), octree_options(object_options, scene_options),
               scene_options.bounding_volume, scene_options.comparison.sphere_fit, parallel),
       // The paper's results depend on the leaves of the rest pose. The cost of an octree at rest leaves out
       // extra elements.
       rebuild_policy_(object_options.octree.rebuild_degraded && extra.empty() &&
-                      !scene_options.comparison.colliding_vertices &&
+                      !scene_options.comparison.colliding_vertices && !scene_options.comparison.lazy_refit &&
                       scene_options.comparison.sphere_fit != SphereFit::box) {
   // They are in the octree now.
   options.edges = {};
@@ -109,8 +110,9 @@ bool WorldObject::is_stale(const SearchedShapes& shapes) const {
 }
 
 bool WorldObject::needs_refit(const SearchedShapes& shapes) const {
-  return (shapes.resting && !resting_.is_current(placement_)) ||
-         (shapes.moving && !moving_.is_current(placement_)) ||
+  const bool has_resting =
+      is_lazy(shapes) ? resting_.has_object(placement_) : resting_.is_current(placement_);
+  return (shapes.resting && !has_resting) || (shapes.moving && !moving_.is_current(placement_)) ||
          (shapes.near && !near().is_current(placement_));
 }
 
@@ -138,14 +140,20 @@ void WorldObject::refit(const SearchedShapes& shapes, const Parallel& parallel) 
   const SearchedShapes wanted = with_current(shapes);
   // When one shape bakes the translation, the other one is out of date.
   do {
-    if (wanted.resting)
-      refitted_triangles_ = std::max(refitted_triangles_, resting_.update(octree_, placement_, parallel));
+    if (wanted.resting) refitted_triangles_ = std::max(refitted_triangles_, update_resting(wanted, parallel));
     if (wanted.moving) moving_.update(octree_, placement_, parallel);
     if (wanted.near) (placement_.has_motion() ? near_ : moving_).update(octree_, placement_, parallel);
   } while (needs_refit(wanted));
   if (!options.self_collision || has_extra_elements()) return;
   if (wanted.cull_resting) resting_.update_culling(octree_, placement_, parallel);
   if (wanted.cull_moving) moving_.update_culling(octree_, parallel);
+}
+
+std::size_t WorldObject::update_resting(const SearchedShapes& shapes, const Parallel& parallel) {
+  if (!is_lazy(shapes)) return resting_.update(octree_, placement_, parallel);
+  const bool has_bounds = bounds_.version == placement_.version();
+  return resting_.update_object(octree_, placement_, has_bounds ? std::optional(bounds_.box) : std::nullopt,
+                                parallel);
 }
 
 void WorldObject::update_volumes(const SearchedShapes& shapes) {

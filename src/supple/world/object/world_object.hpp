@@ -26,6 +26,8 @@ namespace supple {
 struct SearchedShapes {
   bool resting = false, moving = false;
   bool near = false;  ///< elements at the end of the step
+  /// Only the volumes of the objects, for the resting shape; `World::refit_where_objects_meet` follows.
+  bool lazy = false;
   /// Self-collision culling, for objects that are tested against themselves.
   bool cull_resting = false, cull_moving = false;
 
@@ -57,6 +59,15 @@ class WorldObject {
   bool needs_refit(const SearchedShapes& shapes) const;
   /// Updates the shapes and the volumes.
   void update(const SearchedShapes& shapes, const Parallel& parallel);
+
+  /// After an update of lazy shapes: the volumes of the children of a node. Returns the number of triangles
+  /// that it read.
+  std::size_t update_children(std::uint32_t node) {
+    return resting_.update_children(octree_, placement_, node);
+  }
+  /// The next update of lazy shapes takes this box of the present positions, which are finite. It has no
+  /// translation.
+  void set_bounds(const Aabb& box) { bounds_ = {box, placement_.version()}; }
 
   /// The triangles in the leaves that the last update refitted.
   std::size_t refitted_triangles() const { return refitted_triangles_; }
@@ -98,7 +109,11 @@ class WorldObject {
   void update_fine_boxes() { fine_boxes_.update(resting_view(), placement_.end(), placement_.version()); }
   /// The boxes of the octree at rest in double; null when they are not up to date.
   const QueryBox* fine_boxes() const { return fine_boxes_.of_version(placement_.version()); }
-  OctreeView resting_view() const { return resting_.view(octree_, placement_); }
+  OctreeView resting_view() const {
+    OctreeView view = resting_.view(octree_, placement_);
+    view.descent = descent_;
+    return view;
+  }
   OctreeView moving_view() const {
     OctreeView view = moving_.view(octree_, placement_);
     if (has_extra_elements()) view.culled = nullptr;
@@ -134,15 +149,22 @@ class WorldObject {
 
  private:
   void refit(const SearchedShapes& shapes, const Parallel& parallel);
+  std::size_t update_resting(const SearchedShapes& shapes, const Parallel& parallel);
+  bool is_lazy(const SearchedShapes& shapes) const { return shapes.lazy && !options.self_collision; }
   /// Adds the shapes that are up to date.
   SearchedShapes with_current(SearchedShapes shapes) const;
   double current_query_cost() const;
   void update_volumes(const SearchedShapes& shapes);
 
   std::uint32_t face_count_;
+  Descent descent_;
   ObjectOctree octree_;
   Placement placement_;
   RestingShape resting_{face_count_};
+  struct Bounds {
+    Aabb box;
+    std::uint64_t version = 0;  // of the placement
+  } bounds_;
   MovingShape moving_{MovingShape::Part::way}, near_{MovingShape::Part::end};
   FineBoxes fine_boxes_;
   RebuildPolicy rebuild_policy_;
