@@ -83,6 +83,7 @@ struct RootCube {
 /// The smallest cube around a box, with the same centre. Throws `Error` when the box has no finite size.
 RootCube cube_around(Vec3d lowest, Vec3d highest);
 
+/// The most levels of the scene octree that may be there whatever the objects: 8^6 = 262,144 regions.
 inline constexpr std::uint32_t most_full_levels = 6;
 
 /// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
