@@ -304,7 +304,7 @@ class Document(RecordingTest):
         done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[0], "supple recording 3 intersection")
+        self.assertEqual(lines[0], "supple recording 4 intersection")
         contacts = [len(f["contacts"]) for f in self.detect("run.h5", "--contact-details")["frames"]]
         told = [int(line.split(" s: ")[1].split(" contacts")[0]) for line in lines[1:]]
         self.assertEqual(told, [count for count in contacts if count > 0])
