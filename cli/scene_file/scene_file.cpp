@@ -327,7 +327,9 @@ ObjectDefaults read_scene(const toml::table& table, const fs::path& path, Simula
   read_detection(reader, simulation.border, simulation.scene);
   if (as_2007 && !is_at_rest(simulation.scene))
     reader.fail("method", "2007 finds intersections; add them to contacts, or leave out method");
-  if (!reader.has("fused_refit") && !simulation.scene.comparison.lazy_refit) simulation.fused_refit = false;
+  if (!simulation.scene.comparison.lazy_refit && std::exchange(simulation.fused_refit, false) &&
+      reader.has("fused_refit"))
+    reader.fail("fused_refit", "has no effect without lazy_refit = \"on\"");
   reader.read("gravity", defaults.gravity);
   if (const toml::table* response = reader.table("response"))
     simulation.response = read_response(*response, path);

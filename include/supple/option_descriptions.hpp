@@ -142,6 +142,11 @@ struct Description<SceneOctreeOptions> {
         .range = ValueRange::from(2, 0xffffffff).or_zero(),
         .unit = "objects",
         .key = "scene_octree_expand_at"});
+    visitor(Field<Options, RegionSphereTest>{.name = "region_sphere_test",
+                                             .member = &Options::region_sphere_test,
+                                             .doc = "Test of a region of the scene octree against a sphere: "
+                                                    "Arvo's test, or the test of the paper (grown box)",
+                                             .key = "region_test"});
     visitor(Field<Options, bool>{
         .name = "expand_for_large_objects",
         .member = &Options::expand_for_large_objects,
@@ -157,11 +162,6 @@ struct Description<SceneOctreeOptions> {
                                               "1 in the paper",
                                           .range = ValueRange::from(0, most_full_levels),
                                           .key = "scene_octree_min_level"});
-    visitor(Field<Options, RegionSphereTest>{.name = "region_sphere_test",
-                                             .member = &Options::region_sphere_test,
-                                             .doc = "Test of a region of the scene octree against a sphere: "
-                                                    "Arvo's test, or the test of the paper (grown box)",
-                                             .key = "region_test"});
     visitor(Field<Options, std::uint32_t>{.name = "arity",
                                           .member = &Options::arity,
                                           .doc = "Children of a region of the scene octree",

@@ -41,7 +41,7 @@ class MethodOf2007(ProgramTest):
         return json.loads(done.out)
 
     def contacts(self, result):
-        return [[(group["a"], group["b"], group["pairs"]) for group in frame["contact_groups"]] for frame in result["frames"]]
+        return [[(group["a"], group["b"], group["pairs"]) for group in frame["triangle_pairs"]] for frame in result["frames"]]
 
     def check_options(self, result, **others):
         for key, value in (PRESET | others).items():

@@ -533,9 +533,12 @@ TEST(Stop, AtAnyTimeLeavesTheNextStepAsItWouldBe) {
       });
       while (spins > 0 && !is_started) std::this_thread::yield();
       if (spins == 0) stopper.join();
-      stops += scene.detect({.stop = source.get_token()}).stopped ? 1 : 0;
+      const bool was_stopped = scene.detect({.stop = source.get_token()}).stopped;
       if (spins > 0) stopper.join();
       EXPECT_EQ(SceneInspector(scene).validate(), "");
+      // A request that comes too late stops nothing, and then the next step has no pairs that begin.
+      if (!was_stopped) continue;
+      ++stops;
       const DetectResult &result = scene.detect(), &expected = fresh.result();
       EXPECT_FALSE(result.stopped);
       EXPECT_EQ(hash_of(result), hash_of(expected));
