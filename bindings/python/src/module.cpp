@@ -48,7 +48,8 @@ NB_MODULE(_core, module) {
     supple::SceneOptions scene;
     set_options(scene, keywords, "method_of_2007");
     const supple::ObjectOptions object{.octree = supple::octree_of_2007()};
-    return nb::make_tuple(dict_of(supple::with_method_of_2007(scene)), dict_of(object.octree));
+    return nb::make_tuple(dict_of_options(supple::with_method_of_2007(scene)),
+                          dict_of_options(object.octree));
   });
   module.def("end_calls", &WithoutGil::end_calls);
   module.def("forget_calls", &WithoutGil::forget_calls);

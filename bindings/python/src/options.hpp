@@ -159,7 +159,7 @@ bool set_option(Struct& options, const std::string& keyword, nb::handle value, c
 
 /// The options of a structure that are numbers or words, by key.
 template <class Struct>
-nb::dict dict_of(const Struct& options) {
+nb::dict dict_of_options(const Struct& options) {
   nb::dict dict;
   for_each_leaf(
       [&]<class Field>(const Field& field, const auto& value) {

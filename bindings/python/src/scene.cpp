@@ -373,7 +373,7 @@ void bind_scene(nb::module_& module) {
     const Together together(core.guard());
     return triangles_of_object(core.scene(), id);
   });
-  scene.def("options", [](SceneCore& core) { return dict_of(core.scene().options()); });
+  scene.def("options", [](SceneCore& core) { return dict_of_options(core.scene().options()); });
   bind_queries(module, scene);
 }
 
