@@ -16,7 +16,7 @@ struct SceneText {
   const char* text;
 };
 
-/// Generated from scenes/ when the program is built: `table1_3`, `three_humans` and `three_bikes`.
+/// Generated from scenes/ when the program is built: `table1_3`, `three_humans`, `three_bikes` and `nine`.
 std::span<const SceneText> table1_scene_texts();
 
 /// Reads or makes a scene. Run `seed` differs from other runs by the random numbers of the motion.
