@@ -28,11 +28,11 @@ STYLE = """
 @media (prefers-color-scheme: dark) { :root { --holds: #5fd08f; --fails: #ff8a80; --open: #e6c15a; } }
 body { font: 15px/1.5 sans-serif; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; }
 .table { overflow-x: auto; margin: 0.6rem 0 1.4rem; }
-table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
+table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; width: max-content; }
 caption { text-align: left; font-weight: bold; padding-bottom: 0.4rem; }
 th, td { padding: 0.2rem 0.8rem 0.2rem 0; text-align: right; vertical-align: top; border-bottom: 1px solid #8884;
   white-space: nowrap; }
-.text { text-align: left; white-space: normal; }
+.text { text-align: left; white-space: normal; max-width: 26rem; }
 .claim { background: var(--soft); border-left: 5px solid; padding: 0.6rem 1rem; margin: 0.8rem 0; }
 .claim p { margin: 0.15rem 0; } .claim b { text-transform: uppercase; font-size: 0.8rem; letter-spacing: 0.04em; }
 .holds { border-color: var(--holds); } .holds b { color: var(--holds); }
