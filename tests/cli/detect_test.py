@@ -111,7 +111,8 @@ class Json(ProgramTest):
         self.write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 8 8 8\nv 9 8 8\nv 8 9 8\nf 1 2 3\nf 4 5 6\n")
         self.write("near.obj", "v 8 8 7\nv 8 8 9\nv 9 9 8\nf 1 2 3\n")
         (frame,) = self.detect("two.obj", "near.obj", "--node-pairs", "0", "1", *octree)["frames"]
-        # The root of two.obj has two children. The last one, its eighth octant, collides with the only node of near.obj.
+        # The root of two.obj has two children. The last one, its eighth octant, collides with the only node of
+        # near.obj.
         levels = [[[[0, 0], [0, 0]]], [[[8, 1], [0, 0]]]]
         self.assertEqual(frame["node_pairs"], {"a": 0, "b": 1, "levels": levels})
         done = self.run_here("detect", "two.obj", "near.obj", "--node-pairs", "0", "1", *octree)

@@ -97,7 +97,8 @@ MassSpring::MassSpring(const TriangleMesh& rest, const MassSpringOptions& option
       next_(now_),
       forces_(network_),
       bad_vertices_(network_.block_count(), none),
-      block_bounds_(network_.block_count()) {
+      block_bounds_(network_.block_count()),
+      has_inert_(std::find(kinds_.begin(), kinds_.end(), VertexKind::inert) != kinds_.end()) {
   rest_areas_.reserve(triangles_.size());
   for (const Triangle& t : triangles_) {
     rest_areas_.push_back(triangle_area(rest.positions[t[0]], rest.positions[t[1]], rest.positions[t[2]]));
@@ -278,9 +279,9 @@ void MassSpring::for_blocks(const Parallel& parallel, Visit visit) {
 
 void MassSpring::check_vertices(const State& from, const State& to, std::uint32_t first, std::uint32_t last) {
   std::uint32_t bad = none;
-  Bounds bounds;
+  PointBounds bounds;
   for (std::uint32_t v = last; v-- > first;) {
-    bounds.add(to.positions[v], to.positions[v]);
+    bounds.add(to.positions[v]);
     const Vec3d way = to.positions[v] - from.positions[v], velocity = to.velocities[v];
     const bool good = dot(way, way) <= longest_way_squared_ &&
                       dot(velocity, velocity) <= std::numeric_limits<double>::max();

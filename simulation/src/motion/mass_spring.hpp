@@ -1,9 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "geometry/point_bounds.hpp"
 #include "motion/deformation_limit.hpp"
 #include "motion/force_sum.hpp"
 #include "motion/implicit/backward_euler.hpp"
@@ -99,21 +98,10 @@ class MassSpring {
   RestShape rest_before_;
   ForceSum forces_;
   std::vector<Vec3d> predicted_;
-  struct Bounds {
-    static constexpr double infinity = std::numeric_limits<double>::infinity();
-    Vec3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-
-    void add(const Vec3d& lowest, const Vec3d& highest) {
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], lowest[axis]);
-        high[axis] = std::max(high[axis], highest[axis]);
-      }
-    }
-  };
-
   std::vector<std::uint32_t> bad_vertices_;  // the first invalid vertex of each block
-  std::vector<Bounds> block_bounds_;         // of the positions after a step
+  std::vector<PointBounds> block_bounds_;    // of the positions after a step
   bool has_bounds_ = false;                  // they are those of `now_`
+  bool has_inert_ = false;                   // vertices
   std::unique_ptr<DeformationLimit> limit_;
   std::unique_ptr<BackwardEuler> backward_euler_;
 };

@@ -133,15 +133,14 @@ EdgeStrain MassSpring::edge_strain() const {
 }
 
 std::optional<std::array<Vec3d, 2>> MassSpring::bounds() const {
-  const auto is_inert = [](VertexKind kind) { return kind == VertexKind::inert; };
-  if (kinds_.empty() || std::any_of(kinds_.begin(), kinds_.end(), is_inert)) return std::nullopt;
-  Bounds bounds;
+  if (kinds_.empty() || has_inert_) return std::nullopt;
+  PointBounds bounds;
   if (has_bounds_) {
-    for (const Bounds& block : block_bounds_) bounds.add(block.low, block.high);
+    for (const PointBounds& block : block_bounds_) bounds.add(block);
   } else {
     for (const Vec3d& position : now_.positions) {
       if (!is_finite(position)) return std::nullopt;
-      bounds.add(position, position);
+      bounds.add(position);
     }
   }
   return std::array{bounds.low, bounds.high};

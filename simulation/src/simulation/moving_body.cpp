@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/error.hpp"
+#include "geometry/point_bounds.hpp"
 #include "supple/simulation_descriptions.hpp"
 
 namespace supple {
@@ -91,19 +91,12 @@ void MovingBody::end_step(const std::optional<Border>& border) {
 }
 
 void MovingBody::reflect_at(const Border& border) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vec3d low{infinity, infinity, infinity}, high = -1.0 * low;
-  for (const Vec3d& p : body.positions()) {
-    for (int axis = 0; axis < 3; ++axis) {
-      // Comparisons with NaN are false.
-      if (p[axis] < low[axis]) low[axis] = p[axis];
-      if (p[axis] > high[axis]) high[axis] = p[axis];
-    }
-  }
+  PointBounds bounds;
+  for (const Vec3d& position : body.positions()) bounds.add(position);
   const Vec3d velocity = body.mean_velocity();
   for (int axis = 0; axis < 3; ++axis) {
-    if (low[axis] < border[0][axis]) reflect_from_side(axis, -1, velocity[axis]);
-    if (high[axis] > border[1][axis]) reflect_from_side(axis, 1, velocity[axis]);
+    if (bounds.low[axis] < border[0][axis]) reflect_from_side(axis, -1, velocity[axis]);
+    if (bounds.high[axis] > border[1][axis]) reflect_from_side(axis, 1, velocity[axis]);
   }
 }
 

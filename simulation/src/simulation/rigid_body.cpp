@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/point_bounds.hpp"
 #include "geometry/vector.hpp"
 #include "supple/trigonometry.hpp"
 
@@ -26,18 +27,6 @@ Vec3d rotated(const std::array<double, 9>& r, Vec3d p) {
           r[6] * p.x + r[7] * p.y + r[8] * p.z};
 }
 
-struct Bounds {
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vec3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-
-  void add(const Vec3d& p) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], p[axis]);
-      high[axis] = std::max(high[axis], p[axis]);
-    }
-  }
-};
-
 }  // namespace
 
 RigidBody::RigidBody(std::span<const Vec3d> start, const RigidMotion& motion, double time_step, Random random)
@@ -57,7 +46,7 @@ void RigidBody::set_positions(std::span<const Vec3d> positions) {
   way_ = {};
   transform_ = {};
   is_current_ = false;
-  Bounds bounds;
+  PointBounds bounds;
   Vec3d sum;
   double count = 0;
   for (const Vec3d& p : start_) {
@@ -91,7 +80,7 @@ void RigidBody::place(Scene& scene, ObjectId id) const {
 }
 
 void RigidBody::reflect_at(const Border& border) {
-  Bounds bounds{low_ + way_, high_ + way_};
+  PointBounds bounds{low_ + way_, high_ + way_};
   if (spins()) {
     bounds = {};
     for (const Vec3d& p : positions()) {

@@ -181,8 +181,7 @@ const WorldObject& Inspection::refitted_object(ObjectId id, const char* call) co
     fail(std::string(call) + ": " + asked.options.name +
          " was moved since anything was detected; call detect first");
   }
-  SearchedShapes shapes = question().shapes();
-  if (std::exchange(shapes.lazy, false)) asked.update(shapes, world_.parallel);
+  if (question().shapes().lazy) asked.update_all_children(world_.parallel);
   return asked;
 }
 

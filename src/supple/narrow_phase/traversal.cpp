@@ -298,6 +298,7 @@ void find_overlapping_children(const ObjectPairView& pair, NodePair node_pair,
 
 ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles) {
   ChildPair at;
+  bool above_leaves = true;  // both nodes are nodes, not leaves that wait for the other side
   for (;;) {
     const OctreeNode& node_a = pair.a.nodes[at.node_a];
     const OctreeNode& node_b = pair.b.nodes[at.node_b];
@@ -307,8 +308,11 @@ ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles) {
     std::uint64_t mask = 0;
     test_children(pair, {&nodes, 1}, &mask);
     at.apart = (mask >> (node_width * at.child_a + at.child_b) & 1) == 0;
+    if (above_leaves && !pair.is_moving() && pair.a.descent == Descent::one_side_first)
+      at.apart = at.apart || !child_overlaps_node(pair, at.node_a, at.child_a, at.node_b);
     const bool inner_a = node_a.is_inner(at.child_a), inner_b = node_b.is_inner(at.child_b);
     if (at.apart || !(inner_a || inner_b)) return at;
+    above_leaves = inner_a && inner_b;
     if (inner_a) at.node_a = node_a.child_node(at.child_a);
     if (inner_b) at.node_b = node_b.child_node(at.child_b);
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/aabb.hpp"
+#include "geometry/point_bounds.hpp"
 #include "geometry/vector.hpp"
 #include "octree/build/balanced_build.hpp"
 #include "octree/build/bottom_up_build.hpp"
@@ -52,25 +53,14 @@ OctreeTopology build_topology(const PositionsView& positions, std::span<const Tr
   }
 }
 
-/// The bounds of finite points, rounded outward once.
-struct PointBounds {
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vec3d low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-
-  void add(const Vec3d& p) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], p[axis]);
-      high[axis] = std::max(high[axis], p[axis]);
-    }
-  }
-  Aabb box() const {
-    Aabb box;
-    if (!(low.x <= high.x)) return box;
-    extend(box, low);
-    extend(box, high);
-    return box;
-  }
-};
+/// The bounds of finite points, rounded outward.
+Aabb box_of(const PointBounds& bounds) {
+  Aabb box;
+  if (!(bounds.low.x <= bounds.high.x)) return box;
+  extend(box, bounds.low);
+  extend(box, bounds.high);
+  return box;
+}
 
 void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {
   spheres.x[child] = sphere.center.x;
@@ -287,7 +277,7 @@ bool ObjectOctree::refit_object(const VertexBuffer& vertices, const std::optiona
   } else if (!box) {
     for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) add(vertex);
   }
-  box_ = box && unused_vertices_.empty() ? *box : bounds.box();
+  box_ = box && unused_vertices_.empty() ? *box : box_of(bounds);
   if (all_finite && !spheres_.empty()) sphere_ = sphere_fitter(vertices, {}, false).sphere_of_object(box_);
   return all_finite;
 }
@@ -300,7 +290,7 @@ std::size_t ObjectOctree::refit_children(std::uint32_t n, const VertexBuffer& ve
     for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
       for (const std::uint32_t vertex : triangles_[t]) bounds.add(vertices[vertex]);
     }
-    set_child_box(boxes_[n], child, bounds.box());
+    set_child_box(boxes_[n], child, box_of(bounds));
   }
   if (!spheres_.empty()) refit_spheres(n, n + 1, sphere_fitter(vertices, {}, false));
   return node.size();

@@ -18,7 +18,10 @@ std::uint32_t SceneInspector::octree_depth(ObjectId object) const {
   return scene_->implementation_->inspection().octree_depth(object);
 }
 OctreeStatistics SceneInspector::octree_statistics(ObjectId object) const {
-  return scene_->implementation_->world.object(object, "octree_statistics").octree_statistics();
+  const World& world = scene_->implementation_->world;
+  WorldObject& asked = world.object(object, "octree_statistics");
+  asked.update_all_children(world.parallel);
+  return asked.octree_statistics();
 }
 Aabb SceneInspector::bounds(ObjectId object) const {
   return scene_->implementation_->world.object(object, "bounds").box();

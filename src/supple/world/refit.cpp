@@ -57,20 +57,18 @@ World::Work World::refit(const SearchedShapes& shapes) {
 
 std::uint64_t World::refit_where_objects_meet(std::span<const ContactJob> jobs) {
   std::uint64_t triangles = 0;
-  std::vector<NodePair> nodes;
-  std::vector<ChildPair> children;
   for (const ContactJob& job : jobs) {
     WorldObject &a = *slots_[job.a].object, &b = *slots_[job.b].object;
     if (job.a == job.b || a.octree().nodes().empty() || b.octree().nodes().empty()) continue;
     const ObjectPairView pair = pair_of(a.resting_view(), b.resting_view());
-    for (nodes.assign(1, {}); !nodes.empty();) {
-      const NodePair at = nodes.back();
-      nodes.pop_back();
+    for (node_pairs_.assign(1, {}); !node_pairs_.empty();) {
+      const NodePair at = node_pairs_.back();
+      node_pairs_.pop_back();
       triangles += a.update_children(at.a) + b.update_children(at.b);
-      children.clear();
-      find_overlapping_children(pair, at, children);
-      for (const ChildPair& both : children) {
-        if (const auto below = nodes_below(pair, both)) nodes.push_back(*below);
+      children_.clear();
+      find_overlapping_children(pair, at, children_);
+      for (const ChildPair& both : children_) {
+        if (const auto below = nodes_below(pair, both)) node_pairs_.push_back(*below);
       }
     }
   }

@@ -122,6 +122,8 @@ class World {
                 counted_version_ = 0;  // the newest, and the newest when queries of octrees were counted
   std::vector<std::uint32_t> stale_, degraded_, small_;  // scratch memory
   std::vector<double> queries_;                          // of degraded objects
+  std::vector<NodePair> node_pairs_;                     // scratch memory
+  std::vector<ChildPair> children_;
 };
 
 /// Throws an error that names `call` when the object has no such vertex or triangle.

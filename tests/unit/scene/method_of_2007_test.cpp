@@ -195,6 +195,19 @@ TEST(LazyRefit, TakesBoundsThatTheMotionFound) {
       given.translate(b, {0, 0.1, 0});
       EXPECT_EQ(hash_of(given.detect()), hash_of(plain.detect())) << step;
     }
+    // A translation beyond 1e30 is added to the positions; the bounds are those from before.
+    TriangleMesh large = ball;
+    for (Vec3d& p : large.positions) p = p * 1e29;
+    for (Scene* const scene : {&plain, &given}) {
+      if (scene == &plain) scene->set_positions(a, large.positions);
+      if (scene == &given)
+        scene->set_positions(a, large.positions, {Vec3d{-1e29, -1e29, -1e29}, Vec3d{1e29, 1e29, 1e29}});
+      scene->set_positions(b, large.positions);
+      for (const ObjectId id : {a, b}) scene->translate(id, {2e30, 0, 0});
+    }
+    EXPECT_EQ(hash_of(given.detect()), hash_of(plain.detect()));
+    EXPECT_FALSE(given.result().contacts.empty());
+    EXPECT_TRUE(given.verify().agrees());
     constexpr double inf = std::numeric_limits<double>::infinity();
     EXPECT_THROW(given.set_positions(a, ball.positions, {Vec3d{-inf, 0, 0}, Vec3d{1, 1, 1}}), Error);
   }

@@ -38,7 +38,10 @@ std::size_t RestingShape::update_object(ObjectOctree& octree, Placement& placeme
     has_inert_faces_ = false;
     object_version_ = placement.version();
     placement.forget_moved();
-    if (placement.needs_baking(octree.box())) placement.bake(parallel);
+    if (!placement.needs_baking(octree.box())) continue;
+    placement.bake(parallel);
+    // The given box is that of the positions before.
+    return update_object(octree, placement, std::nullopt, parallel);
   }
   return 0;
 }

@@ -65,6 +65,10 @@ class WorldObject {
   std::size_t update_children(std::uint32_t node) {
     return resting_.update_children(octree_, placement_, node);
   }
+  /// After an update of lazy shapes: the volumes of all nodes. O(n).
+  void update_all_children(const Parallel& parallel) {
+    if (resting_.has_object(placement_)) resting_.update(octree_, placement_, parallel);
+  }
   /// The next update of lazy shapes takes this box of the present positions, which are finite. It has no
   /// translation.
   void set_bounds(const Aabb& box) { bounds_ = {box, placement_.version()}; }
