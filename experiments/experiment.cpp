@@ -39,7 +39,6 @@ Table1Options table1_options(const ExperimentOptions& options) {
   table1.method = options.method;
   table1.runs = options.runs.value_or(table1.runs);
   table1.simulated_seconds = options.simulated_seconds.value_or(table1.simulated_seconds);
-  if (options.wall_clock) table1.wall_clock = *options.wall_clock;
   if (options.program_clock) table1.program_clock = *options.program_clock;
   table1.threads = options.threads;
   table1.seed = options.seed;

@@ -27,7 +27,6 @@ struct ExperimentOptions {
   Table1Method method{};
   std::optional<std::uint32_t> runs{};
   std::optional<std::uint32_t> simulated_seconds{};  ///< 0: no runs in simulated time
-  std::optional<std::uint32_t> wall_clock{};         ///< seconds of detection per run; none: no such runs
   std::optional<std::uint32_t> program_clock{};      ///< of detection and motion per run; none: no such runs
   bool resume = false;
 };

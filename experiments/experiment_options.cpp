@@ -137,15 +137,10 @@ void add_table1(CLI::App& app, ExperimentOptions& options, cli::Dependences& dep
       cli::add_number(app, "--runs", options.runs, 1, 1000, "Number of runs per configuration (default: 5)"));
   table1_only(cli::add_number(app, "--seconds", options.simulated_seconds, 0, 1'000'000,
                               "Simulated seconds per run; 0 means no runs in simulated time (default: 600)"));
-  dependences.push_back({app.get_option("--seconds"),
-                         [&options] {
-                           return options.simulated_seconds.value_or(1) > 0 || options.wall_clock ||
-                                  options.program_clock;
-                         },
-                         "--wall-clock or --program-clock when it is 0"});
-  table1_only(cli::add_number(app, "--wall-clock", options.wall_clock, 1, 1'000'000,
-                              "Also count the collisions that this many seconds of detection find in each "
-                              "run; the time of the motion does not count"));
+  dependences.push_back(
+      {app.get_option("--seconds"),
+       [&options] { return options.simulated_seconds.value_or(1) > 0 || options.program_clock; },
+       "--program-clock when it is 0"});
   table1_only(
       cli::add_number(app, "--program-clock", options.program_clock, 1, 1'000'000,
                       "Also count the collisions that the whole program finds in this many seconds of "

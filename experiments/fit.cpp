@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace supple::experiments {
 
@@ -57,6 +58,17 @@ Estimate estimate_of(std::span<const double> values) {
   const double mean = sum / count;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return {mean, values.size() < 2 ? nan : std::sqrt(squares / (count - 1) / count)};
+}
+
+Estimate ratio_of_sums(std::span<const double> a, std::span<const double> b) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const double sum_a = std::accumulate(a.begin(), a.end(), 0.0),
+               sum_b = std::accumulate(b.begin(), b.end(), 0.0);
+  if (!(sum_b > 0)) return {nan, nan};
+  std::vector<double> without_one;
+  for (std::size_t i = 0; i < b.size(); ++i) without_one.push_back((sum_a - a[i]) / (sum_b - b[i]));
+  const auto count = static_cast<double>(b.size());
+  return {sum_a / sum_b, (count - 1) * estimate_of(without_one).error};
 }
 
 std::string text_of(const Estimate& estimate) {

@@ -308,9 +308,6 @@ def plots_of(folder, name, parameters):
     """The plots of a table."""
     if name == "table1_runs":
         return table1_plots(rows_of(folder, name), rows_of(folder, "table1_means"), float(parameters["--seconds"]), "")
-    if name == "table1_clock_runs":
-        return table1_plots(rows_of(folder, name), rows_of(folder, "table1_clock_means"),
-                            float(parameters["--wall-clock"]), ", by the clock")
     if name == "table1_program_runs":
         return table1_plots(rows_of(folder, name), rows_of(folder, "table1_program_means"),
                             float(parameters["--program-clock"]), ", by the clock of the program")

@@ -4,6 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "base/missing_threads.hpp"
 
 namespace supple::experiments {
 
@@ -13,6 +20,43 @@ void Work::done(std::uint64_t steps, const std::string& what) {
   const double part = static_cast<double>(done_) / static_cast<double>(std::max<std::uint64_t>(total_, 1));
   const std::string left = part > 0 ? fmt::format(", {} left", duration(elapsed / part - elapsed)) : "";
   progress_.update(done_, what + left);
+}
+
+void in_parallel(std::size_t count, std::optional<std::uint32_t> threads,
+                 const std::function<bool(std::size_t)>& task) {
+  std::mutex mutex;
+  std::size_t next = 0;
+  std::exception_ptr fault;
+  const auto work = [&] {
+    for (;;) {
+      std::size_t taken = 0;
+      {
+        const std::lock_guard lock(mutex);
+        if (next >= count) return;
+        taken = next++;
+      }
+      try {
+        if (task(taken)) continue;
+        const std::lock_guard lock(mutex);
+        next = count;
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        fault = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  const unsigned given = threads.value_or(0);
+  const unsigned wanted = given > 0 ? given : std::max(std::thread::hardware_concurrency(), 1u);
+  std::vector<std::thread> others;
+  try {
+    while (others.size() + 1 < std::min<std::size_t>(wanted, count)) others.emplace_back(work);
+  } catch (const std::system_error&) {
+    cli::warn_of_missing_threads(wanted, static_cast<unsigned>(others.size()) + 1);
+  }
+  work();
+  for (std::thread& thread : others) thread.join();
+  if (fault) std::rethrow_exception(fault);
 }
 
 double least(const std::vector<double>& seconds) {

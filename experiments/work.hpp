@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +33,11 @@ double seconds_of(Call&& call) {
   call();
   return std::max(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0.0);
 }
+
+/// Calls `task(index)` for each index below `count`, in this order, several at a time: with `threads`
+/// threads; none or 0: one per core. Stops after a call that returns false or throws, and rethrows.
+void in_parallel(std::size_t count, std::optional<std::uint32_t> threads,
+                 const std::function<bool(std::size_t)>& task);
 
 /// The minimum of several times of the same work, because other work of the machine only adds time. 0 when
 /// there are no times.

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
+#include <cstddef>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -29,71 +29,80 @@ namespace {
 constexpr std::array<std::uint32_t, 3> object_counts{3, 6, 9};
 constexpr std::array volumes{BoundingVolume::aabb, BoundingVolume::sphere};
 
-/// A value of one parameter; all others have their defaults.
-struct Setting {
+/// A value of one parameter of the method; all others have their defaults.
+struct MethodSetting {
   std::string name;
-  std::optional<double> size{};
   Table1Method method{};
+};
+
+/// A motion, and the methods that see it. One parameter differs from the defaults: of the motion or of the
+/// method.
+struct Motion {
+  std::vector<MethodSetting> methods;
+  std::optional<double> size{};
   std::function<void(MassSpringMotion&)> change{};
 };
 
-std::vector<Setting> settings(bool quick) {
-  std::vector<Setting> all{{"the scenes as they are"}};
-  for (const double size : {4.0, 5.0, 8.0, 10.0}) all.push_back({fmt::format("cube of {}", size), size});
-  const auto add_motion = [&](const std::string& name, const std::function<void(MassSpringMotion&)>& change) {
-    all.push_back({name, {}, {}, change});
+std::vector<MethodSetting> method_settings() {
+  std::vector<MethodSetting> all{{"the scenes as they are"}};
+  const auto add = [&](const std::string& name, const std::function<void(Table1Method&)>& change) {
+    change(all.emplace_back(MethodSetting{name}).method);
+  };
+  for (const std::uint32_t level : {1u, 3u, 4u})
+    add(fmt::format("level-allowed {} of the scene", level),
+        [=](Table1Method& m) { m.scene.scene_octree.max_level = level; });
+  for (const std::uint32_t level : {1u, 2u, 3u, 4u})
+    add(fmt::format("level-allowed {} of the objects", level),
+        [=](Table1Method& m) { m.octree.max_level = level; });
+  for (const std::uint32_t size : {4u, 16u})
+    add(fmt::format("leaves of up to {} triangles", size),
+        [=](Table1Method& m) { m.octree.leaf_size = size; });
+  add("spheres of eq. 3 and 4", [](Table1Method& m) { m.scene.comparison.sphere_fit = SphereFit::box; });
+  return all;
+}
+
+std::vector<Motion> motions(bool quick) {
+  std::vector<Motion> all{{method_settings()}};
+  for (const double size : {4.0, 5.0, 8.0, 10.0}) all.push_back({{{fmt::format("cube of {}", size)}}, size});
+  const auto add = [&](const std::string& name, const std::function<void(MassSpringMotion&)>& change) {
+    all.push_back({{{name}}, {}, change});
   };
   for (const double factor : {0.25, 0.5, 2.0, 4.0})
-    add_motion(fmt::format("speed × {}", factor), [=](MassSpringMotion& m) { m.random_speed *= factor; });
+    add(fmt::format("speed × {}", factor), [=](MassSpringMotion& m) { m.random_speed *= factor; });
   for (const double factor : {0.25, 0.5, 2.0})
-    add_motion(fmt::format("stiffness × {}", factor), [=](MassSpringMotion& m) {
+    add(fmt::format("stiffness × {}", factor), [=](MassSpringMotion& m) {
       m.springs.stiffness *= factor;
       m.springs.bending_stiffness *= factor;
       m.springs.area_stiffness *= factor;
       m.springs.damping *= std::sqrt(factor);
     });
   for (const double factor : {0.0, 0.5, 2.0})
-    add_motion(fmt::format("forces × {}", factor), [=](MassSpringMotion& m) { m.random_force *= factor; });
-  const auto add_method = [&](const std::string& name, const std::function<void(Table1Method&)>& change) {
-    Setting setting{name};
-    change(setting.method);
-    all.push_back(setting);
-  };
-  for (const std::uint32_t level : {1u, 3u, 4u})
-    add_method(fmt::format("level-allowed {} of the scene", level),
-               [=](Table1Method& m) { m.scene.scene_octree.max_level = level; });
-  for (const std::uint32_t level : {1u, 2u, 3u, 4u})
-    add_method(fmt::format("level-allowed {} of the objects", level),
-               [=](Table1Method& m) { m.octree.max_level = level; });
-  for (const std::uint32_t size : {4u, 16u})
-    add_method(fmt::format("leaves of up to {} triangles", size),
-               [=](Table1Method& m) { m.octree.leaf_size = size; });
-  add_method("spheres of eq. 3 and 4",
-             [](Table1Method& m) { m.scene.comparison.sphere_fit = SphereFit::box; });
-  if (quick) all.resize(3);
+    add(fmt::format("forces × {}", factor), [=](MassSpringMotion& m) { m.random_force *= factor; });
+  if (quick) {
+    all.resize(2);
+    all.front().methods.resize(2);
+  }
   return all;
 }
 
-/// Collisions of a run by each clock: in simulated time, per second of detection, per second of the program.
+/// Collisions of a run by each clock, up to a factor: in simulated time, of the detection, of the program.
 std::array<double, 3> by_clocks(std::uint64_t collisions, const RunCounts& run) {
-  const auto number = static_cast<double>(collisions);
-  return {number, number / run.detection_seconds, number / (run.detection_seconds + run.motion_seconds)};
+  return {static_cast<double>(collisions), in_ten_minutes_of_detection(collisions, run),
+          in_ten_minutes_of_program(collisions, run)};
 }
 constexpr std::array clock_names{"simulated time", "detection alone", "whole program"};
 
 /// The runs of one setting: by number of objects, by volume, by seed.
 using SettingRuns = std::array<std::array<std::vector<RunCounts>, volumes.size()>, object_counts.size()>;
 
-/// The ratio of spheres to boxes over the runs, and the error of the paper's kind: runs are independent.
+/// The ratio of spheres to boxes over the runs.
 Estimate ratio_of(const SettingRuns& runs, std::size_t objects, std::size_t clock, bool is_broad) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < runs[objects][0].size(); ++i) {
-    const RunCounts &boxes = runs[objects][0][i], &spheres = runs[objects][1][i];
-    const double of_boxes = by_clocks(is_broad ? boxes.broad : boxes.narrow, boxes)[clock],
-                 of_spheres = by_clocks(is_broad ? spheres.broad : spheres.narrow, spheres)[clock];
-    if (of_boxes > 0) ratios.push_back(of_spheres / of_boxes);
+  std::array<std::vector<double>, volumes.size()> numbers;
+  for (std::size_t v = 0; v < volumes.size(); ++v) {
+    for (const RunCounts& run : runs[objects][v])
+      numbers[v].push_back(by_clocks(is_broad ? run.broad : run.narrow, run)[clock]);
   }
-  return estimate_of(ratios);
+  return ratio_of_sums(numbers[1], numbers[0]);
 }
 
 /// Whether both are the same within two standard errors of their difference.
@@ -101,69 +110,61 @@ bool agree(const Estimate& ours, const Estimate& theirs) {
   return std::fabs(ours.mean - theirs.mean) <= 2 * std::hypot(ours.error, theirs.error);
 }
 
-RunCounts run_one(const Setting& setting, std::size_t objects, std::size_t volume, std::uint64_t seed,
-                  double seconds) {
-  Table1Method method = setting.method;
-  method.scene.contacts = ContactKinds::none;
-  const Table1Scene scene = mixed_scene(object_counts[objects], setting.size);
+/// One run of a motion with all its methods, boxes and spheres in turn.
+std::vector<RunCounts> run_one(const Motion& motion, std::size_t objects, std::uint64_t seed,
+                               double seconds) {
+  std::vector<Variant> variants;
+  for (const MethodSetting& setting : motion.methods) {
+    for (const BoundingVolume volume : volumes) {
+      variants.push_back({setting.method, volume});
+      variants.back().method.scene.contacts = ContactKinds::none;
+    }
+  }
+  const Table1Scene scene = mixed_scene(object_counts[objects], motion.size);
   const auto change = [&](cli::Input& input) {
     for (cli::InputObject& object : input.objects) {
-      if (setting.change) setting.change(std::get<MassSpringMotion>(*object.motion));
+      if (motion.change) motion.change(std::get<MassSpringMotion>(*object.motion));
     }
   };
   const auto steps =
       static_cast<std::uint64_t>(std::llround(seconds / read_scene(scene, {}, seed).simulation.time_step));
   return run_scene(
-      scene, method, volumes[volume], seed, 1, [&](const RunCounts& so_far) { return so_far.steps < steps; },
-      change);
+      scene, variants, seed, 1, [&](const RunCounts& so_far) { return so_far.steps < steps; }, change);
 }
 
-/// All runs, several at a time.
-std::vector<SettingRuns> run_all(const std::vector<Setting>& all, const SensitivityOptions& options,
+/// All runs of all settings, in the order of the motions and their methods.
+std::vector<SettingRuns> run_all(const std::vector<Motion>& all, const SensitivityOptions& options,
                                  Work& work) {
   struct Task {
-    std::size_t setting, objects, volume, run;
+    const Motion* motion;
+    std::size_t first_setting, objects, run;
   };
-  std::vector<SettingRuns> results(all.size());
+  std::vector<SettingRuns> results;
   std::vector<Task> tasks;
-  for (std::size_t s = 0; s < all.size(); ++s) {
+  for (const Motion& motion : all) {
     for (std::size_t o = 0; o < object_counts.size(); ++o) {
-      for (std::size_t v = 0; v < volumes.size(); ++v) {
-        results[s][o][v].resize(options.runs);
-        for (std::size_t run = 0; run < options.runs; ++run) tasks.push_back({s, o, v, run});
-      }
+      for (std::size_t run = 0; run < options.runs; ++run) tasks.push_back({&motion, results.size(), o, run});
+    }
+    results.resize(results.size() + motion.methods.size());
+  }
+  for (SettingRuns& setting : results) {
+    for (auto& of_objects : setting) {
+      for (std::vector<RunCounts>& of_volume : of_objects) of_volume.resize(options.runs);
     }
   }
   std::mutex mutex;
-  std::size_t next = 0;
-  std::exception_ptr fault;
-  const auto work_on = [&] {
-    for (;;) {
-      Task task;
-      {
-        const std::lock_guard lock(mutex);
-        if (next == tasks.size() || fault) return;
-        task = tasks[next++];
-      }
-      try {
-        RunCounts counts =
-            run_one(all[task.setting], task.objects, task.volume, options.seed + task.run, options.seconds);
-        const std::lock_guard lock(mutex);
-        results[task.setting][task.objects][task.volume][task.run] = std::move(counts);
-        work.done(1, all[task.setting].name);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        fault = std::current_exception();
-      }
+  in_parallel(tasks.size(), options.threads, [&](std::size_t index) {
+    const Task& task = tasks[index];
+    std::vector<RunCounts> counts =
+        run_one(*task.motion, task.objects, options.seed + task.run, options.seconds);
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      results[task.first_setting + i / volumes.size()][task.objects][i % volumes.size()][task.run] =
+          std::move(counts[i]);
     }
-  };
-  std::vector<std::thread> threads;
-  const unsigned wanted =
-      options.threads.value_or(0) > 0 ? *options.threads : std::max(std::thread::hardware_concurrency(), 1u);
-  while (threads.size() + 1 < wanted) threads.emplace_back(work_on);
-  work_on();
-  for (std::thread& thread : threads) thread.join();
-  if (fault) std::rethrow_exception(fault);
+    work.done(1, task.motion->methods.front().name);
+    return true;
+  });
   return results;
 }
 
@@ -180,9 +181,13 @@ SensitivityOptions sensitivity_options(bool quick) {
 }
 
 Report run_sensitivity(const SensitivityOptions& options, bool show_progress) {
-  const std::vector<Setting> all = settings(options.quick);
-  Work work(all.size() * object_counts.size() * volumes.size() * options.runs, show_progress);
+  const std::vector<Motion> all = motions(options.quick);
+  Work work(all.size() * object_counts.size() * options.runs, show_progress);
   const std::vector<SettingRuns> results = run_all(all, options, work);
+  std::vector<std::string> names;
+  for (const Motion& motion : all) {
+    for (const MethodSetting& setting : motion.methods) names.push_back(setting.name);
+  }
   Table table{
       "sensitivity",
       "Collisions with spheres for each collision with boxes, and whether all three agree with the paper "
@@ -197,12 +202,12 @@ Report run_sensitivity(const SensitivityOptions& options, bool show_progress) {
   table.columns.push_back({"mean_strain", "Mean strain"});
   std::size_t converging = 0, rows = 0;
   std::string agreeing;
-  for (std::size_t s = 0; s < all.size(); ++s) {
+  for (std::size_t s = 0; s < names.size(); ++s) {
     double strain = 0;
     for (const RunCounts& run : results[s][2][0]) strain += run.strain.mean / options.runs;
     for (std::size_t clock = 0; clock < clock_names.size(); ++clock) {
       for (const bool is_broad : {true, false}) {
-        std::vector<Cell> row{all[s].name, std::string(clock_names[clock]),
+        std::vector<Cell> row{names[s], std::string(clock_names[clock]),
                               std::string(is_broad ? "broad" : "narrow")};
         std::array<Estimate, 3> ratios{};
         bool all_agree = true;
@@ -226,7 +231,7 @@ Report run_sensitivity(const SensitivityOptions& options, bool show_progress) {
         ++rows;
         converging += converges;
         if (all_agree)
-          agreeing += fmt::format("{}{} ({}, {} phase)", agreeing.empty() ? "" : "; ", all[s].name,
+          agreeing += fmt::format("{}{} ({}, {} phase)", agreeing.empty() ? "" : "; ", names[s],
                                   clock_names[clock], is_broad ? "broad" : "narrow");
       }
     }
@@ -237,9 +242,9 @@ Report run_sensitivity(const SensitivityOptions& options, bool show_progress) {
   report.summary =
       "The paper does not state the size of its scene, the speed and the stiffness of its objects, nor "
       "level-allowed. This sweep changes one of them at a time and counts by all three clocks. Numbers by a "
-      "clock "
-      "are collisions in simulated time divided by the seconds that the detection, or the program, took for "
-      "it.";
+      "clock are collisions in simulated time divided by the seconds that the detection, or the program, "
+      "took "
+      "for it. All methods see the same motion, step by step.";
   report.parameters = {{"seconds", fmt::format("{}", options.seconds)},
                        {"runs", fmt::format("{}", options.runs)},
                        {"seed", fmt::format("{}", options.seed)}};

@@ -14,6 +14,7 @@
 #include "supple/error.hpp"
 #include "table1/paper_table.hpp"
 #include "table1/table1_claims.hpp"
+#include "table1/table1_clocks.hpp"
 #include "table1/table1_runs.hpp"
 #include "work.hpp"
 
@@ -113,22 +114,6 @@ std::string paragraph_of_strain(const std::vector<Runs>& all) {
       100 * mean / count, 100 * least, 100 * most, 100 * largest);
 }
 
-std::string paragraph_of_clock(const std::vector<Runs>& clock) {
-  double detection = 0, total = 0;
-  for (const Runs& runs : clock) {
-    for (const RunCounts& run : runs.counts) {
-      detection += run.detection_seconds;
-      total += run.real_seconds;
-    }
-  }
-  return fmt::format(
-      "The clock counts the detection alone: refit, broad phase and narrow phase. It does not count the "
-      "motion, and these runs have no exact stage, which the paper does not have either. All runs took {}, "
-      "of "
-      "which the detection took {}. Numbers depend on the machine and on its load.",
-      duration(total), duration(detection));
-}
-
 constexpr const char* options_file = "table1_options.csv";
 
 /// Writes the options into the folder, which is created if necessary; or with `resume` compares them with
@@ -171,21 +156,19 @@ void check_options(const Table1Options& options, const fs::path& folder, bool re
 std::optional<Report> run_table1(const Table1Options& options, const fs::path& folder, bool resume,
                                  const cli::Interruption& interruption, bool show_progress) {
   check_options(options, folder, resume);
-  std::vector<Runs> steps, clock, program;
+  std::vector<Runs> steps, program;
   if (options.simulated_seconds > 0) {
     RunLog log(folder, RunClock::simulated, resume);
     auto runs = run_by_steps(options, log, interruption, show_progress);
     if (!runs) return std::nullopt;
     steps = std::move(*runs);
   }
-  const auto run_clock = [&](RunClock which, std::vector<Runs>& done) {
-    RunLog log(folder, which, resume);
-    auto runs = run_by_clock(options, which, log, interruption, show_progress);
-    if (runs) done = std::move(*runs);
-    return runs.has_value();
-  };
-  if (options.wall_clock && !run_clock(RunClock::detection, clock)) return std::nullopt;
-  if (options.program_clock && !run_clock(RunClock::program, program)) return std::nullopt;
+  if (options.program_clock) {
+    RunLog log(folder, RunClock::program, resume);
+    auto runs = run_by_clock(options, log, interruption, show_progress);
+    if (!runs) return std::nullopt;
+    program = std::move(*runs);
+  }
 
   Report report;
   report.name = "table1";
@@ -197,13 +180,17 @@ std::optional<Report> run_table1(const Table1Options& options, const fs::path& f
       "and exactly when triangles begin to intersect. The scenes table1_3, table1_6, … have pawns, fish and "
       "rabbits of masses and springs in a cube whose border reflects them.";
   report.parameters = describe(options);
-  report.claims = judge_table1(steps, clock, program);
+  report.claims = judge_table1(steps, program);
   report.sections.push_back(
       {"Three clocks side by side",
-       {"The same objects count differently by each clock: in simulated time the volumes "
-        "alone decide; by the clock of the detection, boxes take more steps; by the clock "
-        "of the whole program, the motion hides a part of that."},
-       {clocks_table(steps, clock, program)}});
+       {"The same objects count differently by each clock: in simulated time the volumes alone decide; by "
+        "the "
+        "clock of the detection, boxes take more steps; by the clock of the whole program, the motion hides "
+        "a "
+        "part of that. Each run has its collisions, the seconds of its detection without the exact stage and "
+        "those of its motion, so one run counts by all clocks. Both volumes see the same motion, step by "
+        "step."},
+       {clocks_table(steps, program), rates_table(steps, program)}});
   if (!steps.empty())
     report.sections.push_back(section_of(
         "Counted in simulated time",
@@ -212,10 +199,6 @@ std::optional<Report> run_table1(const Table1Options& options, const fs::path& f
         "numbers with those of the paper. Its runs took ten minutes of real time. " +
             paragraph_of_strain(steps),
         steps, options.seed, RunClock::simulated));
-  if (!clock.empty())
-    report.sections.push_back(section_of("Counted by the clock of the detection",
-                                         paragraph_of_clock(clock) + ' ' + paragraph_of_strain(clock), clock,
-                                         options.seed, RunClock::detection));
   if (!program.empty())
     report.sections.push_back(section_of("Counted by the clock of the whole program",
                                          paragraph_of_program(program) + ' ' + paragraph_of_strain(program),

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -11,11 +12,10 @@
 
 #include "judgement.hpp"
 #include "table1/paper_table.hpp"
+#include "table1/table1_clocks.hpp"
 
 namespace supple::experiments {
 namespace {
-
-using Member = std::uint64_t RunCounts::*;
 
 /// `holds` when a number is above 0 by more than two standard errors, `does_not_hold` when it is below.
 Verdict verdict_above_zero(double number, double error) {
@@ -23,40 +23,9 @@ Verdict verdict_above_zero(double number, double error) {
   return number < -2 * error ? Verdict::does_not_hold : Verdict::cannot_tell;
 }
 
-/// The runs of a scene with boxes and with spheres.
-struct Both {
-  const Runs* boxes;
-  const Runs* spheres;
-};
-
-/// The scenes in their first size that ran with boxes and with spheres.
-std::vector<Both> with_both(const std::vector<Runs>& all) {
-  std::vector<Both> result;
-  for (const Runs& runs : all) {
-    if (runs.volume != BoundingVolume::aabb || !runs.is_first_size) continue;
-    if (const Runs* const spheres = find(all, runs.scene.name, BoundingVolume::sphere))
-      result.push_back({&runs, spheres});
-  }
-  return result;
-}
-
 std::vector<Both> of_table(std::vector<Both> scenes) {
   std::erase_if(scenes, [](const Both& both) { return !is_of_table(*both.boxes); });
   return scenes;
-}
-
-/// The ratio of spheres to boxes, run by run: the same seed gives the same motion. Runs in which boxes count
-/// nothing are left out.
-Estimate sphere_ratio(const std::vector<Both>& scenes, Member member) {
-  std::vector<double> ratios;
-  for (const auto& [boxes, spheres] : scenes) {
-    for (std::size_t i = 0; i < boxes->counts.size(); ++i) {
-      const RunCounts &of_boxes = boxes->counts[i], &of_spheres = spheres->counts[i];
-      if (of_boxes.*member > 0 && of_boxes.failure.empty() && of_spheres.failure.empty())
-        ratios.push_back(static_cast<double>(of_spheres.*member) / static_cast<double>(of_boxes.*member));
-    }
-  }
-  return estimate_of(ratios);
 }
 
 void append(std::string& list, const std::string& text) {
@@ -65,13 +34,16 @@ void append(std::string& list, const std::string& text) {
 }
 
 /// `0.87 ± 0.03 (3 objects), …`
-std::string ratios_text(const std::vector<Both>& scenes, Member member) {
+std::string ratios_text(const std::vector<Both>& scenes, const Quantity& quantity) {
   std::string list;
   for (const Both& both : scenes)
-    append(list, fmt::format("{} ({})", text_of(sphere_ratio({both}, member)),
+    append(list, fmt::format("{} ({})", text_of(sphere_ratio({both}, quantity)),
                              is_of_table(*both.boxes) ? fmt::format("{} objects", both.boxes->objects)
                                                       : both.boxes->scene.name));
   return list;
+}
+std::string ratios_text(const std::vector<Both>& scenes, Member member) {
+  return ratios_text(scenes, number_of(member));
 }
 
 /// Holds when there are more collisions with boxes than with spheres.
@@ -92,14 +64,14 @@ Claim judge_more_with_boxes(const std::vector<Both>& scenes) {
           broad};
 }
 
-Claim judge_clock(const std::vector<Both>& scenes, const char* what) {
-  const Estimate broad = sphere_ratio(scenes, &RunCounts::broad);
+Claim judge_clock(const std::vector<Both>& scenes, const char* what, const ByClock& clock) {
+  const Estimate broad = sphere_ratio(scenes, clock.quantity(&RunCounts::broad));
   return {fmt::format("By the clock of {}: boxes allow more collisions than spheres (7).", what),
           more_with_boxes(broad),
           fmt::format("In the same time of {}, spheres begin {} times as many collisions as boxes in "
-                      "the broad phase, {} in the narrow phase, and take {} times as many steps.",
-                      what, ratios_text(scenes, &RunCounts::broad), ratios_text(scenes, &RunCounts::narrow),
-                      ratios_text(scenes, &RunCounts::steps)),
+                      "the broad phase and {} in the narrow phase.",
+                      what, ratios_text(scenes, clock.quantity(&RunCounts::broad)),
+                      ratios_text(scenes, clock.quantity(&RunCounts::narrow))),
           broad};
 }
 
@@ -333,59 +305,22 @@ Claim judge_paper_arithmetic() {
 
 }  // namespace
 
-Table clocks_table(const std::vector<Runs>& steps, const std::vector<Runs>& clock,
-                   const std::vector<Runs>& program) {
-  Table table{"table1_clocks",
-              "Collisions with spheres for each collision with boxes, by each clock, and in the paper",
-              {{"scene", "Scene"},
-               {"phase", "Phase"},
-               {"simulated", "Simulated time"},
-               {"simulated_error", "± error", 2},
-               {"detection", "Detection alone"},
-               {"detection_error", "± error", 2},
-               {"program", "Whole program"},
-               {"program_error", "± error", 2},
-               {"paper", "The paper"},
-               {"paper_error", "± error", 2}}};
-  const std::vector<Runs>& first = !steps.empty() ? steps : !clock.empty() ? clock : program;
-  for (const Both& both_runs : with_both(first)) {
-    const std::string& scene = both_runs.boxes->scene.name;
-    for (const bool is_broad : {true, false}) {
-      const Member member = is_broad ? &RunCounts::broad : &RunCounts::narrow;
-      std::vector<Cell> row{scene, std::string(is_broad ? "broad" : "narrow")};
-      const auto add = [&](const Estimate& ratio) {
-        row.push_back(cell_of(ratio.mean));
-        row.push_back(cell_of(ratio.error));
-      };
-      for (const std::vector<Runs>* const all : {&steps, &clock, &program}) {
-        std::vector<Both> of_scene = with_both(*all);
-        std::erase_if(of_scene, [&](const Both& other) { return other.boxes->scene.name != scene; });
-        add(sphere_ratio(of_scene, member));
-      }
-      const auto of_paper =
-          is_of_table(*both_runs.boxes) ? paper_ratio(both_runs.boxes->objects, is_broad) : std::nullopt;
-      add(of_paper.value_or(estimate_of({})));
-      table.add(std::move(row));
-    }
-  }
-  return table;
-}
-
-std::vector<Claim> judge_table1(const std::vector<Runs>& steps, const std::vector<Runs>& clock,
-                                const std::vector<Runs>& program) {
+std::vector<Claim> judge_table1(const std::vector<Runs>& steps, const std::vector<Runs>& program) {
   std::vector<Claim> claims;
   const auto add = [&](std::optional<Claim> claim) {
     if (claim) claims.push_back(std::move(*claim));
   };
-  const std::vector<Both> by_steps = with_both(steps), by_clock = with_both(clock),
-                          by_program = with_both(program);
+  const auto clocks = by_clocks(steps, program);
+  const std::vector<Both> by_steps = with_both(steps);
   if (!of_table(by_steps).empty()) add(judge_more_with_boxes(of_table(by_steps)));
-  if (!of_table(by_clock).empty()) add(judge_clock(of_table(by_clock), "detection"));
-  if (!of_table(by_program).empty()) add(judge_clock(of_table(by_program), "detection and motion"));
+  if (const auto scenes = of_table(with_both(*clocks[1].runs)); !scenes.empty())
+    add(judge_clock(scenes, "detection", clocks[1]));
+  if (const auto scenes = of_table(with_both(*clocks[2].runs)); !scenes.empty())
+    add(judge_clock(scenes, "detection and motion", clocks[2]));
   if (!by_steps.empty()) add(judge_proof_of_cost(by_steps));
   if (!steps.empty()) add(judge_narrow_is_fewer(steps));
   // Both ways of counting can decide the other claims; simulated time does not depend on the machine.
-  const std::vector<Runs>& all = !steps.empty() ? steps : !clock.empty() ? clock : program;
+  const std::vector<Runs>& all = steps.empty() ? program : steps;
   const std::vector<Both> scenes = with_both(all);
   const std::size_t first = claims.size();
   add(judge_ratio_tends_to_one(of_table(scenes)));

@@ -7,14 +7,9 @@
 
 namespace supple::experiments {
 
-/// Judges the claims of section 7 by the runs counted in simulated time and by those counted by the clock.
-/// Claims about which no runs say anything are left out. Numbers of collisions differ between runs: a claim
-/// about them is decided only beyond two standard errors.
-/// `program` are the runs by the clock of detection and motion.
-std::vector<Claim> judge_table1(const std::vector<Runs>& steps, const std::vector<Runs>& clock,
-                                const std::vector<Runs>& program);
-/// The ratio of spheres to boxes by each clock, and that of the paper, for each scene that ran with both.
-Table clocks_table(const std::vector<Runs>& steps, const std::vector<Runs>& clock,
-                   const std::vector<Runs>& program);
+/// Judges the claims of section 7 by the runs counted in simulated time and by those by the clock of
+/// detection and motion, `program`. Claims about which no runs say anything are left out. Numbers of
+/// collisions differ between runs: a claim about them is decided only beyond two standard errors.
+std::vector<Claim> judge_table1(const std::vector<Runs>& steps, const std::vector<Runs>& program);
 
 }  // namespace supple::experiments

@@ -28,11 +28,8 @@ Table empty_table(RunClock clock) {
   };
   if (clock == RunClock::simulated) add("exact", "Exact");
   add("steps", "Steps");
-  if (clock != RunClock::simulated) {
-    add("detection_seconds", "Detection, s");
-    add("motion_seconds", "Motion, s");
-    add("real_seconds", "Whole run, s");
-  }
+  add("detection_seconds", "Detection, s");
+  add("motion_seconds", "Motion, s");
   add("mean_strain", "Mean strain");
   add("least_strain", "Least mean");
   add("most_strain", "Greatest mean");
@@ -51,9 +48,8 @@ std::vector<Cell> row_of(const Runs& runs, std::uint64_t seed, const RunCounts& 
                         run.narrow};
   if (clock == RunClock::simulated) row.emplace_back(run.exact);
   row.emplace_back(run.steps);
-  if (clock != RunClock::simulated)
-    row.insert(row.end(), {run.detection_seconds, run.motion_seconds, run.real_seconds});
-  row.insert(row.end(), {run.strain.mean, run.strain.least, run.strain.most, run.strain.largest});
+  row.insert(row.end(), {run.detection_seconds, run.motion_seconds, run.strain.mean, run.strain.least,
+                         run.strain.most, run.strain.largest});
   row.push_back(run.failure.empty() ? Cell() : Cell(run.failure));
   return row;
 }
@@ -71,11 +67,10 @@ bool read(const std::vector<std::string>& fields, std::size_t& place, Number& nu
 bool read(const std::vector<std::string>& fields, RunClock clock, RunCounts& run) {
   std::size_t place = 5;
   run.failure = fields.back();
-  const bool by_steps = clock == RunClock::simulated;
   const auto read_all = [&](auto&... numbers) { return (read(fields, place, numbers) && ...); };
-  return read_all(run.broad, run.narrow) && (!by_steps || read_all(run.exact)) && read_all(run.steps) &&
-         (by_steps || read_all(run.detection_seconds, run.motion_seconds, run.real_seconds)) &&
-         read_all(run.strain.mean, run.strain.least, run.strain.most, run.strain.largest);
+  return read_all(run.broad, run.narrow) && (clock == RunClock::program || read_all(run.exact)) &&
+         read_all(run.steps, run.detection_seconds, run.motion_seconds, run.strain.mean, run.strain.least,
+                  run.strain.most, run.strain.largest);
 }
 
 std::string key_of(const std::vector<std::string>& fields) {
@@ -89,14 +84,7 @@ std::vector<std::string> fields_of(const std::vector<Cell>& row) {
 }  // namespace
 
 std::string name_of(RunClock clock) {
-  switch (clock) {
-    case RunClock::detection:
-      return "table1_clock";
-    case RunClock::program:
-      return "table1_program";
-    default:
-      return "table1";
-  }
+  return clock == RunClock::program ? "table1_program" : "table1";
 }
 
 Table runs_table(const std::vector<Runs>& all, std::uint64_t first_seed, RunClock clock) {

@@ -71,10 +71,10 @@ std::vector<std::pair<std::string, std::string>> describe(const Table1Options& o
   rows.emplace_back("--runs", fmt::format("{}", options.runs));
   rows.emplace_back("--seed", fmt::format("{}", options.seed));
   rows.emplace_back("--seconds", fmt::format("{}", options.simulated_seconds));
-  if (options.wall_clock) rows.emplace_back("--wall-clock", fmt::format("{}", *options.wall_clock));
-  if (options.program_clock) rows.emplace_back("--program-clock", fmt::format("{}", *options.program_clock));
-  if (options.wall_clock || options.program_clock)
+  if (options.program_clock) {
+    rows.emplace_back("--program-clock", fmt::format("{}", *options.program_clock));
     rows.emplace_back("--threads", fmt::format("{}", options.threads.value_or(1)));
+  }
   return rows;
 }
 

@@ -72,7 +72,6 @@ struct Table1Options {
   Table1Method method{};
   std::uint32_t runs = 5;                 ///< ≥ 1; run k has the seed `seed` + k
   double simulated_seconds = 600;         ///< per run that is counted in simulated time; 0: no such runs
-  std::optional<double> wall_clock{};     ///< seconds of detection per run; none: no such runs
   std::optional<double> program_clock{};  ///< seconds of detection and motion per run; none: no such runs
   /// Parallel runs by steps, 0 for one per core, or threads of a run by the clock. Without a value: one run
   /// per core, and one thread, so that times measure work.

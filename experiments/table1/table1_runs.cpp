@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
+#include <cstddef>
 #include <mutex>
-#include <system_error>
-#include <thread>
 #include <utility>
 
-#include "base/missing_threads.hpp"
 #include "commands/build_simulation.hpp"
 #include "session/settings.hpp"
 #include "table1/table1_scenes.hpp"
@@ -19,31 +16,30 @@
 namespace supple::experiments {
 namespace {
 
-/// A planned run: the index of its `Runs`, its index in them, and its numbers of steps and vertices. Runs by
-/// the clock ignore the steps.
+/// A planned run: its scene with the volumes that are not yet in the log, as indices of their `Runs`, its
+/// index in them, and its numbers of steps and vertices. Runs by the clock ignore the steps.
 struct Task {
-  std::size_t runs;
-  std::uint32_t run;
-  std::uint64_t steps, vertices;
+  std::vector<std::size_t> runs{};
+  std::uint32_t run = 0;
+  std::uint64_t steps = 0, vertices = 0;
 
   std::uint64_t work() const { return steps * vertices; }
 };
 
 /// The results of every scene with every kind of volume, filled with the complete runs, and the tasks that
-/// fill the others. One run of each kind follows the other, so that slow changes of the machine affect all
-/// kinds.
+/// fill the others.
 std::vector<Runs> plan(const Table1Options& options, double run_seconds, const RunLog& log,
                        std::vector<Task>& tasks) {
   std::vector<Runs> all;
   std::vector<Task> first_tasks;
   for (const Table1Scene& scene : options.scenes) {
     const cli::Input input = read_scene(scene, options.method.integrator, options.seed);
-    std::uint64_t vertices = 0;
-    for (const cli::InputObject& object : input.objects) vertices += object.mesh.positions.size();
-    const auto steps =
+    Task& task = first_tasks.emplace_back();
+    for (const cli::InputObject& object : input.objects) task.vertices += object.mesh.positions.size();
+    task.steps =
         static_cast<std::uint64_t>(std::llround(options.simulated_seconds / input.simulation.time_step));
     for (const BoundingVolume volume : options.method.volumes) {
-      first_tasks.push_back({all.size(), 0, steps, vertices});
+      task.runs.push_back(all.size());
       const bool is_first = find(all, scene.name, volume) == nullptr;
       all.push_back({scene, is_first, input.objects.size(), edge_of(input), volume, run_seconds,
                      std::vector<RunCounts>(options.runs)});
@@ -52,19 +48,25 @@ std::vector<Runs> plan(const Table1Options& options, double run_seconds, const R
   for (std::uint32_t run = 0; run < options.runs; ++run) {
     for (Task task : first_tasks) {
       task.run = run;
-      if (const RunCounts* const done = log.find(all[task.runs], options.seed + run))
-        all[task.runs].counts[run] = *done;
-      else
-        tasks.push_back(task);
+      std::erase_if(task.runs, [&](std::size_t index) {
+        const RunCounts* const done = log.find(all[index], options.seed + run);
+        if (done != nullptr) all[index].counts[run] = *done;
+        return done != nullptr;
+      });
+      if (!task.runs.empty()) tasks.push_back(std::move(task));
     }
   }
   return all;
 }
 
+std::vector<Variant> variants_of(const Task& task, const std::vector<Runs>& all, const Table1Method& method) {
+  std::vector<Variant> variants;
+  for (const std::size_t index : task.runs) variants.push_back({method, all[index].volume});
+  return variants;
+}
+
 std::string name_of(const Runs& runs) {
-  return fmt::format("{}{}, {}", runs.scene.name,
-                     runs.scene.size ? fmt::format(" in a cube of {}", *runs.scene.size) : "",
-                     word_of(runs.volume));
+  return runs.scene.name + (runs.scene.size ? fmt::format(" in a cube of {}", *runs.scene.size) : "");
 }
 
 /// Samples the strain of all bodies.
@@ -97,43 +99,121 @@ class StrainSampler {
   bool is_first_ = true;
 };
 
-}  // namespace
-
-RunCounts run_scene(const Table1Scene& scene, const Table1Method& method, BoundingVolume volume,
-                    std::uint64_t seed, std::uint32_t threads,
-                    const std::function<bool(const RunCounts&)>& go_on,
-                    const std::function<void(cli::Input&)>& change) {
-  cli::Input input = read_scene(scene, method.integrator, seed);
-  if (change) change(input);
-  input.simulation.scene = method.scene;
-  input.simulation.scene.bounding_volume = volume;
-  input.simulation.scene.threads = threads;
-  if (method.root_is_border && input.simulation.border) {
-    const auto& [lowest, highest] = *input.simulation.border;
-    input.simulation.scene.scene_octree.root = cube_around(lowest, highest);
+/// The options with which a variant sees an input.
+SimulationOptions options_of(const Variant& variant, const cli::Input& input, std::uint32_t threads) {
+  SimulationOptions options = input.simulation;
+  options.scene = variant.method.scene;
+  options.scene.bounding_volume = variant.volume;
+  options.scene.threads = threads;
+  if (variant.method.root_is_border && options.border) {
+    const auto& [lowest, highest] = *options.border;
+    options.scene.scene_octree.root = cube_around(lowest, highest);
   }
   // Other methods refuse options of the scene octree.
-  if (!viewer::uses_scene_octree(method.scene.broad_phase)) input.simulation.scene.scene_octree = {};
-  input.simulation.fused_refit = method.fused_refit && method.scene.comparison.lazy_refit;
-  for (cli::InputObject& object : input.objects) object.options.octree = method.octree;
+  if (!viewer::uses_scene_octree(options.scene.broad_phase)) options.scene.scene_octree = {};
+  options.fused_refit = variant.method.fused_refit && options.scene.comparison.lazy_refit;
+  return options;
+}
+
+/// A variant that follows the motion of a simulation.
+class Follower {
+ public:
+  Follower(const Variant& variant, const cli::Input& input, const Simulation& simulation,
+           std::uint32_t threads)
+      : options_(options_of(variant, input, threads)), scene_(options_.scene) {
+    const auto& objects = simulation.scene().objects();
+    for (std::size_t i = 0; i < input.objects.size(); ++i) {
+      TriangleMesh mesh = input.objects[i].mesh;
+      const auto start = simulation.positions(objects[i]);
+      mesh.positions.assign(start.begin(), start.end());
+      ObjectOptions object = input.objects[i].options;
+      object.octree = variant.method.octree;
+      ids_.emplace_back(scene_.add(mesh, object), objects[i]);
+    }
+  }
+
+  const DetectResult& detect(const Simulation& simulation) {
+    for (const auto& [own, its] : ids_) {
+      const MassSpringBody* const body = options_.fused_refit ? simulation.body(its) : nullptr;
+      if (const auto bounds = body != nullptr ? body->bounds() : std::nullopt)
+        scene_.set_positions(own, simulation.positions(its), *bounds);
+      else
+        scene_.set_positions(own, simulation.positions(its));
+    }
+    return scene_.detect();
+  }
+
+ private:
+  SimulationOptions options_;
+  Scene scene_;
+  std::vector<std::pair<ObjectId, ObjectId>> ids_;  ///< of the own scene and of the simulation
+};
+
+void count(const DetectResult& result, RunCounts& counts) {
+  counts.broad += result.volume_events.begin.size();
+  counts.narrow += result.narrow_phase_events.begin.size();
+  counts.exact += result.contact_events.begin.size();
+  counts.detection_seconds +=
+      result.stats.total_seconds - result.stats.exact_seconds - result.stats.penetration_seconds;
+}
+
+/// `collisions` found in some seconds, in ten minutes.
+double in_ten_minutes(std::uint64_t collisions, double seconds) {
+  return 600 * static_cast<double>(collisions) / seconds;
+}
+
+}  // namespace
+
+double in_ten_minutes_of_detection(std::uint64_t collisions, const RunCounts& run) {
+  return in_ten_minutes(collisions, run.detection_seconds);
+}
+
+double in_ten_minutes_of_program(std::uint64_t collisions, const RunCounts& run) {
+  return in_ten_minutes(collisions, run.detection_seconds + run.motion_seconds);
+}
+
+std::vector<RunCounts> run_scene(const Table1Scene& scene, std::span<const Variant> variants,
+                                 std::uint64_t seed, std::uint32_t threads,
+                                 const std::function<bool(const RunCounts&)>& go_on,
+                                 const std::function<void(cli::Input&)>& change) {
+  cli::Input input = read_scene(scene, variants.front().method.integrator, seed);
+  if (change) change(input);
+  input.simulation = options_of(variants.front(), input, threads);
+  for (cli::InputObject& object : input.objects) object.options.octree = variants.front().method.octree;
   Simulation simulation = cli::build_simulation(input);
-  RunCounts counts;
-  StrainSampler strain;
-  const auto count = [&](const DetectResult& result) {
-    counts.broad += result.volume_events.begin.size();
-    counts.narrow += result.narrow_phase_events.begin.size();
-    counts.exact += result.contact_events.begin.size();
-    counts.detection_seconds += result.stats.total_seconds;
+  std::vector<Follower> followers;
+  for (const Variant& variant : variants.subspan(1))
+    followers.emplace_back(variant, input, simulation, threads);
+
+  std::vector<RunCounts> counts(variants.size());
+  const auto count_all = [&](const DetectResult& of_first, const std::vector<bool>& runs) {
+    if (runs.front()) count(of_first, counts.front());
+    for (std::size_t i = 1; i < counts.size(); ++i) {
+      if (runs[i]) count(followers[i - 1].detect(simulation), counts[i]);
+    }
   };
-  count(simulation.detect());
+  std::vector<bool> runs(variants.size(), true);
+  count_all(simulation.detect(), runs);
+  StrainSampler sampler;
+  RunStrain strain;
   try {
-    while (go_on(counts)) {
-      count(simulation.step());
-      counts.motion_seconds += simulation.motion_seconds();
-      if (++counts.steps % StrainSampler::every == 0) strain.add(simulation, counts.strain);
+    for (;;) {
+      for (std::size_t i = 0; i < counts.size(); ++i) runs[i] = runs[i] && go_on(counts[i]);
+      if (std::find(runs.begin(), runs.end(), true) == runs.end()) break;
+      const DetectResult& of_first = simulation.step();
+      if (simulation.step_count() % StrainSampler::every == 0) sampler.add(simulation, strain);
+      for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (!runs[i]) continue;
+        ++counts[i].steps;
+        counts[i].motion_seconds += simulation.motion_seconds();
+        counts[i].strain = strain;
+      }
+      count_all(of_first, runs);
     }
   } catch (const MotionError& error) {
-    counts.failure = error.what();
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      if (runs[i]) counts[i].failure = error.what();
+    }
   }
   return counts;
 }
@@ -165,89 +245,66 @@ std::optional<std::vector<Runs>> run_by_steps(const Table1Options& options, RunL
   for (const Task& task : tasks) total += task.work();
   Work work(total, show_progress);
   std::mutex mutex;
-  std::size_t next = 0;
-  std::exception_ptr fault;
-  const auto run_task = [&](const Task& task, const std::string& what) {
-    Runs& runs = all[task.runs];
+  in_parallel(tasks.size(), options.threads, [&](std::size_t index) {
+    const Task& task = tasks[index];
+    const Runs& first = all[task.runs.front()];
+    const std::string what = fmt::format("run {} of {}: {}", index + 1, tasks.size(), name_of(first));
     const std::uint64_t seed = options.seed + task.run;
-    const RunCounts counts =
-        run_scene(runs.scene, options.method, runs.volume, seed, 1, [&](const RunCounts& so_far) {
+    std::uint64_t shown = 0;
+    const std::vector<RunCounts> counts =
+        run_scene(first.scene, variants_of(task, all, options.method), seed, 1, [&](const RunCounts& so_far) {
           constexpr std::uint64_t often = 64;
-          if (so_far.steps > 0 && so_far.steps % often == 0) {
+          if (so_far.steps == shown + often) {
+            shown = so_far.steps;
             const std::lock_guard lock(mutex);
             work.done(often * task.vertices, what);
           }
           return so_far.steps < task.steps && interruption.signal() == 0;
         });
     const std::lock_guard lock(mutex);
-    if (interruption.signal() != 0 && counts.steps < task.steps && counts.failure.empty()) return;
-    log.add(runs, seed, counts);
-    runs.counts[task.run] = counts;
-  };
-  const auto run_tasks = [&] {
-    while (interruption.signal() == 0) {
-      std::size_t taken = 0;
-      {
-        const std::lock_guard lock(mutex);
-        if (next == tasks.size() || fault) return;
-        taken = next++;
-      }
-      try {
-        run_task(tasks[taken],
-                 fmt::format("run {} of {}: {}", taken + 1, tasks.size(), name_of(all[tasks[taken].runs])));
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        fault = std::current_exception();
-      }
+    for (std::size_t i = 0; i < task.runs.size(); ++i) {
+      if (interruption.signal() != 0 && counts[i].steps < task.steps && counts[i].failure.empty()) continue;
+      Runs& runs = all[task.runs[i]];
+      log.add(runs, seed, counts[i]);
+      runs.counts[task.run] = counts[i];
     }
-  };
-  const unsigned cores = std::max(std::thread::hardware_concurrency(), 1u);
-  const unsigned given = options.threads.value_or(0);
-  std::vector<std::thread> threads;
-  const unsigned wanted = given == 0 ? cores : given;
-  try {
-    while (threads.size() + 1 < wanted) threads.emplace_back(run_tasks);
-  } catch (const std::system_error&) {
-    cli::warn_of_missing_threads(wanted, static_cast<unsigned>(threads.size()) + 1);
-  }
-  run_tasks();
-  for (std::thread& thread : threads) thread.join();
-  if (fault) std::rethrow_exception(fault);
+    return interruption.signal() == 0;
+  });
   if (interruption.signal() != 0) return std::nullopt;
   return all;
 }
 
-std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunClock clock, RunLog& log,
+std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunLog& log,
                                               const cli::Interruption& interruption, bool show_progress) {
   constexpr double ticks = 100;  // of progress in a second
-  const bool with_motion = clock == RunClock::program;
-  const double run_seconds = with_motion ? *options.program_clock : *options.wall_clock;
+  const double run_seconds = *options.program_clock;
   Table1Method method = options.method;
   method.scene.contacts = ContactKinds::none;
   std::vector<Task> tasks;
   std::vector<Runs> all = plan(options, run_seconds, log, tasks);
   Work work(static_cast<std::uint64_t>(static_cast<double>(tasks.size()) * run_seconds * ticks),
             show_progress);
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    Runs& runs = all[tasks[i].runs];
-    const std::uint64_t seed = options.seed + tasks[i].run;
-    const std::string what = fmt::format("run {} of {} by the clock{}: {}", i + 1, tasks.size(),
-                                         with_motion ? " with motion" : "", name_of(runs));
+  for (std::size_t index = 0; index < tasks.size(); ++index) {
+    const Task& task = tasks[index];
+    const Runs& first = all[task.runs.front()];
+    const std::uint64_t seed = options.seed + task.run;
+    const std::string what =
+        fmt::format("run {} of {} by the clock: {}", index + 1, tasks.size(), name_of(first));
     std::uint64_t shown = 0;
-    RunCounts counts;
-    const double real_seconds = seconds_of([&] {
-      counts = run_scene(
-          runs.scene, method, runs.volume, seed, options.threads.value_or(1), [&](const RunCounts& so_far) {
-            const double seconds = so_far.detection_seconds + (with_motion ? so_far.motion_seconds : 0);
-            const auto reached = static_cast<std::uint64_t>(seconds * ticks);
-            if (reached > shown) work.done(reached - std::exchange(shown, reached), what);
-            return seconds < run_seconds && interruption.signal() == 0;
-          });
-    });
+    const std::vector<RunCounts> counts =
+        run_scene(first.scene, variants_of(task, all, method), seed, options.threads.value_or(1),
+                  [&](const RunCounts& so_far) {
+                    const double seconds = so_far.detection_seconds + so_far.motion_seconds;
+                    const auto reached = static_cast<std::uint64_t>(seconds * ticks);
+                    if (reached > shown) work.done(reached - std::exchange(shown, reached), what);
+                    return seconds < run_seconds && interruption.signal() == 0;
+                  });
     if (interruption.signal() != 0) return std::nullopt;
-    counts.real_seconds = real_seconds;
-    log.add(runs, seed, counts);
-    runs.counts[tasks[i].run] = counts;
+    for (std::size_t i = 0; i < task.runs.size(); ++i) {
+      Runs& runs = all[task.runs[i]];
+      log.add(runs, seed, counts[i]);
+      runs.counts[task.run] = counts[i];
+    }
   }
   return all;
 }

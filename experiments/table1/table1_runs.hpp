@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,8 @@
 
 namespace supple::experiments {
 
-/// How long a run lasts: in simulated time, by the clock of its detection, or by the clock of its detection
-/// and motion together.
-enum class RunClock { simulated, detection, program };
+/// How long a run lasts: in simulated time, or by the clock of its detection and motion together.
+enum class RunClock { simulated, program };
 
 /// The strain of edges in a run, sampled every 25 steps; 0 without bodies of masses and springs.
 struct RunStrain {
@@ -32,21 +32,31 @@ struct RunStrain {
 struct RunCounts {
   std::uint64_t broad = 0;   ///< pairs of objects whose volumes begin to overlap
   std::uint64_t narrow = 0;  ///< pairs whose octrees' leaves begin to overlap: the paper's output
-  std::uint64_t exact = 0;   ///< pairs whose triangles begin to intersect; 0 in runs by a clock
+  std::uint64_t exact = 0;   ///< pairs whose triangles begin to intersect; 0 in runs by the clock
   std::uint64_t steps = 0;
-  double detection_seconds = 0;  ///< of all steps, without the motion
-  double motion_seconds = 0;     ///< of all steps, without the detection
-  double real_seconds = 0;       ///< of the whole run; only in runs by a clock
+  double detection_seconds = 0;  ///< of all steps: refit, broad phase and narrow phase, not the exact stage
+  double motion_seconds = 0;     ///< of all steps
   RunStrain strain{};
   std::string failure{};  ///< why the motion failed; empty on success
 };
 
-/// One run of a scene, which `change` may change, until `go_on(counts so far)` returns false. The counts are
-/// the same for any number of threads.
-RunCounts run_scene(const Table1Scene& scene, const Table1Method& method, BoundingVolume volume,
-                    std::uint64_t seed, std::uint32_t threads,
-                    const std::function<bool(const RunCounts&)>& go_on,
-                    const std::function<void(cli::Input&)>& change = {});
+/// The collisions of a run in ten minutes, the time of the paper's runs, by each clock.
+double in_ten_minutes_of_detection(std::uint64_t collisions, const RunCounts& run);
+double in_ten_minutes_of_program(std::uint64_t collisions, const RunCounts& run);
+
+/// One way to find the collisions of a run.
+struct Variant {
+  Table1Method method;
+  BoundingVolume volume;
+};
+
+/// One run of a scene, which `change` may change. All variants see the same motion; the counts of a variant
+/// end when `go_on(its counts so far)` returns false, and the run ends after the last. The counts are the
+/// same for any number of threads. `variants` is not empty; all have one integrator.
+std::vector<RunCounts> run_scene(const Table1Scene& scene, std::span<const Variant> variants,
+                                 std::uint64_t seed, std::uint32_t threads,
+                                 const std::function<bool(const RunCounts&)>& go_on,
+                                 const std::function<void(cli::Input&)>& change = {});
 
 /// All runs of one scene with one kind of volume.
 struct Runs {
@@ -73,10 +83,9 @@ inline bool is_of_table(const Runs& runs) {
 /// The runs of a scene in its first size with a kind of volume, or null.
 const Runs* find(const std::vector<Runs>& all, const std::string& scene, BoundingVolume volume);
 
-/// The table with one row per run. Times are in it only by the clock, so that the table of the runs by steps
-/// is the same on every machine.
+/// The table with one row per run. Only its columns of seconds depend on the machine.
 Table runs_table(const std::vector<Runs>& all, std::uint64_t first_seed, RunClock clock);
-/// `table1`, `table1_clock` or `table1_program`: the names of tables begin so.
+/// `table1` or `table1_program`: the names of tables begin so.
 std::string name_of(RunClock clock);
 
 /// The complete runs, in the file of `runs_table`, which gets a row as soon as a run is complete.
@@ -101,9 +110,9 @@ class RunLog {
 /// interruption.
 std::optional<std::vector<Runs>> run_by_steps(const Table1Options& options, RunLog& log,
                                               const cli::Interruption& interruption, bool show_progress);
-/// The same for a time per run, `wall_clock` or `program_clock`, one run after the other. These runs have no
-/// exact stage, as in the paper.
-std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunClock clock, RunLog& log,
+/// The same for `program_clock` seconds per run, one run after the other. These runs have no exact stage, as
+/// in the paper.
+std::optional<std::vector<Runs>> run_by_clock(const Table1Options& options, RunLog& log,
                                               const cli::Interruption& interruption, bool show_progress);
 
 }  // namespace supple::experiments

@@ -130,9 +130,7 @@ class Experiment(ProgramTest):
         self.assertEqual(runs[:1], first)
         self.assertEqual([r["seed"] for r in runs], ["1", "2"])
         for run in runs:
-            program = float(run["detection_seconds"]) + float(run["motion_seconds"])
-            self.assertGreaterEqual(program, 1)
-            self.assertGreater(float(run["real_seconds"]), program)
+            self.assertGreaterEqual(float(run["detection_seconds"]) + float(run["motion_seconds"]), 1)
         self.assertFalse((self.folder / "out/table1_runs.csv").exists())
 
     def test_without_python_or_matplotlib_tables_are_written(self):
@@ -176,7 +174,7 @@ class Experiment(ProgramTest):
         for arguments, parts in (
             (["--objects", "1"], ["--objects", "from 2"]),
             (["--objects", "3,6,3"], ["'3' is given twice"]),
-            (["--seconds", "0"], ["--seconds", "--wall-clock"]),
+            (["--seconds", "0"], ["--seconds", "--program-clock"]),
             (["--bounding-volume", "aabb", "--sphere-fit", "box"], ["--sphere-fit", "--bounding-volume sphere"]),
             (["--broad-phase", "sweep", "--scene-octree-arity", "2"], ["--scene-octree-arity", "octree"]),
             (["--objects", "9", "--scene-size", "2"], ["--scene-size", "at least 3.6"]),
