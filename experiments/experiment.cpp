@@ -18,6 +18,7 @@
 #include "studies/scaling.hpp"
 #include "studies/volumes.hpp"
 #include "table1/table1.hpp"
+#include "table1/table1_scenes.hpp"
 
 namespace supple::experiments {
 namespace {
@@ -26,7 +27,10 @@ Table1Options table1_options(const ExperimentOptions& options) {
   Table1Options table1 = default_table1_options(options.quick);
   if (!options.objects.empty() || !options.scenes.empty()) table1.scenes.clear();
   for (const std::uint32_t objects : options.objects) table1.scenes.push_back(mixed_scene(objects));
-  for (const std::string& file : options.scenes) table1.scenes.push_back({Table1Scene::Source::file, file});
+  for (const std::string& scene : options.scenes) {
+    const auto source = is_built_in(scene) ? Table1Scene::Source::built_in : Table1Scene::Source::file;
+    table1.scenes.push_back({source, scene});
+  }
   if (!options.scene_sizes.empty()) {
     std::vector<Table1Scene> resized;
     for (const Table1Scene& scene : table1.scenes) {

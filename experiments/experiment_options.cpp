@@ -76,8 +76,8 @@ std::vector<CLI::Option*> add_table1_lists(CLI::App& app, ExperimentOptions& opt
           "Numbers of objects: pawns, fish and rabbits in equal parts (default: 3,6,9 and other scenes)")
           ->type_name("N,..."),
       app.add_option("--scene", options.scenes,
-                     "A scene file to run instead of the built-in scenes; may be given several "
-                     "times")
+                     "A scene file, or three_humans or three_bikes, to run instead of the built-in scenes; "
+                     "may be given several times")
           ->type_name("FILE")
           ->expected(1)
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll),

@@ -30,16 +30,17 @@ bool has_effect(const Table1Method& method, std::string_view key) {
 
 Table1Options default_table1_options(bool quick) {
   constexpr double small_edge = 4;  // about the smallest cube in which the nine objects start
+  const Table1Scene humans{Table1Scene::Source::built_in, "three_humans"},
+      bikes{Table1Scene::Source::built_in, "three_bikes"};
   Table1Options options;
-  options.scenes = {mixed_scene(3),
-                    mixed_scene(6),
-                    mixed_scene(9),
-                    mixed_scene(9, small_edge),
-                    {Table1Scene::Source::built_in, "three_humans"}};
-  if (quick)
+  if (quick) {
+    options.scenes = {mixed_scene(3), mixed_scene(6), mixed_scene(9), mixed_scene(9, small_edge), humans};
     options.simulated_seconds = 10;
-  else
-    options.scenes.push_back({Table1Scene::Source::built_in, "three_bikes"});
+    return options;
+  }
+  for (const std::uint32_t objects : {3u, 6u, 9u, 12u, 20u, 30u})
+    options.scenes.push_back(mixed_scene(objects));
+  options.scenes.insert(options.scenes.end(), {mixed_scene(9, small_edge), humans, bikes});
   return options;
 }
 

@@ -22,8 +22,6 @@ struct Task {
   std::vector<std::size_t> runs{};
   std::uint32_t run = 0;
   std::uint64_t steps = 0, vertices = 0;
-
-  std::uint64_t work() const { return steps * vertices; }
 };
 
 /// The results of every scene with every kind of volume, filled with the complete runs, and the tasks that
@@ -45,8 +43,10 @@ std::vector<Runs> plan(const Table1Options& options, double run_seconds, const R
                      std::vector<RunCounts>(options.runs)});
     }
   }
-  for (std::uint32_t run = 0; run < options.runs; ++run) {
-    for (Task task : first_tasks) {
+  // In the order of the table, so that an interrupted experiment has complete rows.
+  for (const Task& first : first_tasks) {
+    for (std::uint32_t run = 0; run < options.runs; ++run) {
+      Task task = first;
       task.run = run;
       std::erase_if(task.runs, [&](std::size_t index) {
         const RunCounts* const done = log.find(all[index], options.seed + run);
@@ -237,12 +237,8 @@ std::optional<std::vector<Runs>> run_by_steps(const Table1Options& options, RunL
                                               const cli::Interruption& interruption, bool show_progress) {
   std::vector<Task> tasks;
   std::vector<Runs> all = plan(options, options.simulated_seconds, log, tasks);
-  // The longest runs start first, so that no thread still has a long run at the end.
-  std::sort(tasks.begin(), tasks.end(), [](const Task& a, const Task& b) {
-    return a.work() != b.work() ? a.work() > b.work() : std::pair(a.run, a.runs) < std::pair(b.run, b.runs);
-  });
   std::uint64_t total = 0;
-  for (const Task& task : tasks) total += task.work();
+  for (const Task& task : tasks) total += task.steps * task.vertices;
   Work work(total, show_progress);
   std::mutex mutex;
   in_parallel(tasks.size(), options.threads, [&](std::size_t index) {

@@ -18,11 +18,16 @@ namespace {
 constexpr std::size_t models = 3;  // pawn, fish and rabbit
 constexpr double spacing = 1.3;    // of scenes/table1_9.toml
 
-cli::Input built_in(const std::string& name, std::uint64_t seed) {
+const SceneText* text_of(std::string_view name) {
   const auto texts = table1_scene_texts();
   const auto found =
       std::find_if(texts.begin(), texts.end(), [&](const SceneText& scene) { return name == scene.name; });
-  if (found == texts.end()) throw Error("there is no scene '" + name + "' in this program");
+  return found == texts.end() ? nullptr : &*found;
+}
+
+cli::Input built_in(const std::string& name, std::uint64_t seed) {
+  const SceneText* const found = text_of(name);
+  if (found == nullptr) throw Error("there is no scene '" + name + "' in this program");
   return cli::read_scene_text(found->text, name + ".toml", {.seed = seed, .time_step = {}});
 }
 
@@ -103,6 +108,10 @@ void set_integrator(cli::Input& input, Integrator integrator, const std::string&
 }
 
 }  // namespace
+
+bool is_built_in(std::string_view name) {
+  return text_of(name) != nullptr;
+}
 
 cli::Input read_scene(const Table1Scene& scene, std::optional<Integrator> integrator, std::uint64_t seed) {
   cli::Input input = scene.source == Table1Scene::Source::built_in ? built_in(scene.name, seed)

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "inputs/inputs.hpp"
 #include "table1/table1_options.hpp"
@@ -18,6 +19,9 @@ struct SceneText {
 
 /// Generated from scenes/ when the program is built: `table1_3`, `three_humans`, `three_bikes` and `nine`.
 std::span<const SceneText> table1_scene_texts();
+
+/// Whether the program contains a scene with this name.
+bool is_built_in(std::string_view name);
 
 /// Reads or makes a scene. Run `seed` differs from other runs by the random numbers of the motion.
 ///
