@@ -71,6 +71,11 @@ Estimate ratio_of_sums(std::span<const double> a, std::span<const double> b) {
   return {sum_a / sum_b, (count - 1) * estimate_of(without_one).error};
 }
 
+Estimate quotient(const Estimate& a, const Estimate& b) {
+  const double ratio = a.mean / b.mean;
+  return {ratio, ratio * std::hypot(a.error / a.mean, b.error / b.mean)};
+}
+
 std::string text_of(const Estimate& estimate) {
   if (std::isnan(estimate.mean)) return "–";
   if (std::isnan(estimate.error)) return fmt::format("{:.2f}", estimate.mean);

@@ -40,6 +40,9 @@ Estimate estimate_of(std::span<const double> values);
 /// 1958): how the ratio varies without one of the pairs. NaN as `estimate_of`, and when Σ b is 0.
 Estimate ratio_of_sums(std::span<const double> a, std::span<const double> b);
 
+/// The quotient of two independent means.
+Estimate quotient(const Estimate& a, const Estimate& b);
+
 /// `0.87 ± 0.03`
 std::string text_of(const Estimate& estimate);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/text.hpp"
 
@@ -36,6 +37,14 @@ Verdict below(const Estimate& quantity, double limit) {
   return quantity.mean - 2 * quantity.error > limit ? Verdict::does_not_hold : Verdict::cannot_tell;
 }
 
+Verdict above(const Estimate& quantity, double limit) {
+  return below({-quantity.mean, quantity.error}, -limit);
+}
+
+Verdict within(const Estimate& quantity, double low, double high) {
+  return both(above(quantity, low), below(quantity, high));
+}
+
 Estimate ratio_of(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) ratios.push_back(a[i] / b[i]);
@@ -54,12 +63,24 @@ std::string sizes_of(const Points& points) {
   return fmt::format("{} to {}", whole(low->first), whole(high->first));
 }
 
-Claim judge_bounds(const std::string& paper, const std::vector<Growth>& growths) {
-  Claim claim{paper, Verdict::holds, {}};
+Claim judge_bounds(const std::string& id, const std::string& where, const std::string& paper,
+                   const std::vector<Growth>& growths) {
+  Claim claim{id, where, paper, Verdict::holds};
+  double largest_excess = -std::numeric_limits<double>::infinity();
   const bool counted =
       std::any_of(growths.begin(), growths.end(), [](const Growth& g) { return g.counts(); });
   for (const Growth& growth : growths) {
-    if (growth.counts() == counted) claim.verdict = both(claim.verdict, judge(growth));
+    if (growth.counts() == counted) {
+      claim.verdict = both(claim.verdict, judge(growth));
+      const PowerLaw fit = fit_power_law(growth.points);
+      const double formula = exponent_of(growth.formula_at, growth.points);
+      if (fit.exponent - formula > largest_excess) {
+        largest_excess = fit.exponent - formula;
+        claim.number = Estimate{fit.exponent, fit.standard_error};
+        claim.quantity =
+            fmt::format("exponent of the {} ({} has {:.2f})", growth.unit, growth.formula, formula);
+      }
+    }
     if (!claim.reason.empty()) claim.reason += ' ';
     claim.reason += described(growth);
   }

@@ -30,6 +30,10 @@ inline constexpr double time_tolerance = 0.25;
 /// Whether a quantity is below a limit by more than two standard errors: `holds`; above: `does_not_hold`;
 /// `cannot_tell` within them or without an error.
 Verdict below(const Estimate& quantity, double limit);
+/// Whether a quantity is above a limit, in the same way.
+Verdict above(const Estimate& quantity, double limit);
+/// Whether a quantity is between two limits, in the same way.
+Verdict within(const Estimate& quantity, double low, double high);
 /// The ratios a[i] / b[i] of times that were measured in turn.
 Estimate ratio_of(const std::vector<double>& a, const std::vector<double>& b);
 
@@ -38,8 +42,9 @@ Verdict both(Verdict a, Verdict b);
 
 /// Whether the measured exponents are within the bounds of the formulas. If there are counts of tests, only
 /// they decide, and times are shown beside them. Undecided with fewer than three points or a standard error
-/// above 0.25.
-Claim judge_bounds(const std::string& paper, const std::vector<Growth>& growths);
+/// above 0.25. Its number is the exponent with the greatest excess over that of its formula.
+Claim judge_bounds(const std::string& id, const std::string& where, const std::string& paper,
+                   const std::vector<Growth>& growths);
 
 /// One row per quantity: the fitted power, and the power of the formula over the same sizes.
 Table exponents_table(const std::string& name, const std::string& caption, const std::string& size,

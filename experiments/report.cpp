@@ -32,7 +32,7 @@ std::string text_of(const Report& report) {
   }
   if (!report.claims.empty()) text += "\nWhat holds\n";
   for (const Claim& claim : report.claims)
-    text += fmt::format("- {}\n  {}{}\n", claim.paper, name_of(claim.verdict), claim.reason);
+    text += fmt::format("- {}\n  {}{}\n", claim.text(), name_of(claim.verdict), claim.reason);
   return text;
 }
 
@@ -59,22 +59,22 @@ void write_report(const Report& report, const fs::path& folder) {
   json["claims"] = Json::array();
   Table claims{report.name + "_claims",
                "",
-               {{"claim", "Claim"},
+               {{"id", "Id"},
+                {"where", "Where"},
+                {"claim", "Claim"},
                 {"verdict", "Verdict"},
                 {"number", "Number"},
                 {"error", "Standard error"},
+                {"quantity", "Quantity"},
                 {"reason", "Reason"}}};
   for (const Claim& claim : report.claims) {
     json["claims"].push_back(
-        {{"paper", claim.paper}, {"verdict", name_of(claim.verdict)}, {"reason", claim.reason}});
+        {{"paper", claim.text()}, {"verdict", name_of(claim.verdict)}, {"reason", claim.reason}});
     std::string verdict = name_of(claim.verdict);
     verdict.resize(verdict.size() - 2);  // without the full stop and the space
-    std::vector<Cell> row{claim.paper, std::move(verdict), Cell(), Cell(), claim.reason};
-    if (claim.number) {
-      row[2] = claim.number->mean;
-      row[3] = claim.number->error;
-    }
-    claims.add(std::move(row));
+    const Estimate number = claim.number.value_or(estimate_of({}));
+    claims.add({claim.id, claim.where, claim.paper, std::move(verdict), cell_of(number.mean),
+                cell_of(number.error), claim.quantity, claim.reason});
   }
   if (!report.claims.empty()) write_file(folder / (claims.name + ".csv"), csv_head() + csv_of(claims));
   for (const Section& section : report.sections) {

@@ -15,11 +15,17 @@ namespace supple::experiments {
 enum class Verdict { holds, does_not_hold, cannot_tell };
 
 struct Claim {
-  std::string paper;  ///< the claim and its section of the paper
+  std::string id;     ///< the name of the claim in documents: `test-cost`
+  std::string where;  ///< the sections of the paper: `6, 7`; empty: a claim of our own
+  std::string paper;  ///< the claim
   Verdict verdict = Verdict::cannot_tell;
-  std::string reason;  ///< with the measured numbers
-  /// The number that decides, and its standard error, where there is one number.
+  std::string reason{};  ///< with the measured numbers
+  /// The number that decides and its standard error, and what it is, where there is one number.
   std::optional<Estimate> number{};
+  std::string quantity{};
+
+  /// The claim with its sections.
+  std::string text() const { return where.empty() ? paper : paper + " (section " + where + ")"; }
 };
 
 /// The page has plots of some tables between the paragraphs and the tables.

@@ -226,6 +226,7 @@ Report run_ablation(const AblationOptions& options, bool show_progress) {
                 {"times_first_error", "± error", 2}}};
   std::string summary;
   Verdict all_faster = Verdict::holds;
+  std::optional<Estimate> least_gain;
   Work work(scenes.size() * static_cast<std::uint64_t>(options.rounds) * programs({}, 1).size(),
             show_progress);
   for (const Table1Scene& scene : scenes) {
@@ -235,7 +236,8 @@ Report run_ablation(const AblationOptions& options, bool show_progress) {
     add_rows(replay, all, costs, steps);
     add_widths(replay, options.threads, options.rounds, widths);
     const Estimate whole = ratio(costs.front(), costs.back());
-    all_faster = both(all_faster, below({-whole.mean, whole.error}, -1));
+    all_faster = both(all_faster, above(whole, 1));
+    if (!least_gain || whole.mean < least_gain->mean) least_gain = whole;
     summary += fmt::format("{}{} times for {}", summary.empty() ? "" : ", ", text_of(whole), replay.name);
   }
   Report report;
@@ -251,9 +253,11 @@ Report run_ablation(const AblationOptions& options, bool show_progress) {
                        {"threads", fmt::format("{}", options.threads)},
                        {"seed", fmt::format("{}", options.seed)}};
   report.claims = {
-      {"Today's defaults take less time than the program of 2007 in each scene, although they decide all "
-       "contacts exactly (our own claim).",
-       all_faster, fmt::format("The program of 2007 takes {}.", summary)}};
+      {"today-is-faster", "",
+       "Today's defaults take less time than the program of 2007 in each scene, although they decide all "
+       "contacts exactly.",
+       all_faster, fmt::format("The program of 2007 takes this many times as long: {}.", summary), least_gain,
+       "time of the program of 2007 / of today, in the scene with the least"}};
   report.sections = {
       {"One choice at a time",
        {"The first row is the method of the paper in this library, not the program of 2007 on its machine. "

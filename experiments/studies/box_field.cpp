@@ -1,5 +1,7 @@
 #include "studies/box_field.hpp"
 
+#include <algorithm>
+
 #include <cmath>
 #include <random>
 
@@ -38,6 +40,26 @@ void BoxField::move() {
       boxes_[i].max[axis] += velocity;
     }
   }
+}
+
+BroadPhaseOptions broad_phase_of_2007(const BoxField& field) {
+  BroadPhaseOptions options;
+  options.threads = 1;
+  options.method = BroadPhaseMethod::octree;
+  options.scene_octree = with_method_of_2007({}).scene_octree;
+  Aabb all;
+  for (const Aabb& box : field.boxes()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      all.min[axis] = std::min(all.min[axis], box.min[axis]);
+      all.max[axis] = std::max(all.max[axis], box.max[axis]);
+    }
+  }
+  options.scene_octree.root =
+      cube_around({all.min.x, all.min.y, all.min.z}, {all.max.x, all.max.y, all.max.z});
+  std::uint32_t level = 1;
+  while (level < most_full_levels && options.scene_octree.root->edge / (2 << level) > 1) ++level;
+  options.scene_octree.max_level = level;
+  return options;
 }
 
 }  // namespace supple::experiments

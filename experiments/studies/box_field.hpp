@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "supple/broad_phase.hpp"
 #include "supple/types.hpp"
 
 namespace supple::experiments {
@@ -23,5 +24,9 @@ class BoxField {
   std::vector<Aabb> boxes_;
   std::vector<Vec3f> velocities_;
 };
+
+/// The broad phase of 2007 for a field, with one thread: the root is the cube around the boxes, and
+/// level-allowed is that of regions about as large as the boxes.
+BroadPhaseOptions broad_phase_of_2007(const BoxField& field);
 
 }  // namespace supple::experiments

@@ -35,8 +35,12 @@ Finding region_tests(const ClaimsOptions& options);
 Finding sweeps_on_one_axis_and_three(const ClaimsOptions& options);
 Finding depth_of_small_triangles(const ClaimsOptions& options);
 Finding depth_of_many_triangles(const ClaimsOptions& options);
+Finding regions_of_objects(const ClaimsOptions& options);
+Finding leaves_of_levels(const ClaimsOptions& options);
+Finding spheres_of_the_equations(const ClaimsOptions& options);
 // Motion.
-Finding refit_after_motion(const ClaimsOptions& options);
+Finding translation_of_volumes(const ClaimsOptions& options);
+Finding one_loop(const ClaimsOptions& options);
 Finding primitives_and_motion(const ClaimsOptions& options);
 Finding stability_of_integrators(const ClaimsOptions& options);
 

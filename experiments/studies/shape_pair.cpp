@@ -34,9 +34,10 @@ TriangleMesh moved(TriangleMesh mesh, Vec3d offset) {
 }
 
 PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
-                      int frames, std::uint32_t threads, BoundingVolume volume) {
+                      int frames, std::uint32_t threads, BoundingVolume volume, Descent descent) {
   SceneOptions options;
   options.bounding_volume = volume;
+  options.comparison.descent = descent;
   options.contacts = ContactKinds::none;
   options.threads = threads;
   Scene scene(options);

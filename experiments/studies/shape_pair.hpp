@@ -27,7 +27,8 @@ struct PairCost {
 /// Moves both objects by 2^-30 in every step, so that every octree is refitted. Runs the stages separately,
 /// without exact tests. The octrees are regular.
 PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
-                      int frames, std::uint32_t threads, BoundingVolume volume = BoundingVolume::aabb);
+                      int frames, std::uint32_t threads, BoundingVolume volume = BoundingVolume::aabb,
+                      Descent descent = Descent::both_sides);
 
 /// The descent into the regular octrees of both objects.
 NodePairList node_pairs_of(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree);

@@ -44,10 +44,7 @@ std::optional<Estimate> paper_ratio(std::uint64_t objects, bool is_broad) {
                                                                              number, BoundingVolume::sphere);
   if (boxes == nullptr || spheres == nullptr) return std::nullopt;
   const auto of_phase = [&](const PaperRow& row) { return estimate_of(is_broad ? row.broad : row.narrow); };
-  const Estimate of_boxes = of_phase(*boxes), of_spheres = of_phase(*spheres);
-  const double ratio = of_spheres.mean / of_boxes.mean;
-  return Estimate{ratio,
-                  ratio * std::hypot(of_boxes.error / of_boxes.mean, of_spheres.error / of_spheres.mean)};
+  return quotient(of_phase(*spheres), of_phase(*boxes));
 }
 
 double mean(std::span<const double> values) {

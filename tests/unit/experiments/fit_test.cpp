@@ -69,7 +69,7 @@ double square(double n) {
 }
 
 TEST(JudgeBounds, ABoundIsFromAbove) {
-  EXPECT_EQ(judge_bounds("", {growth("tests", line, square)}).verdict, Verdict::holds);
+  EXPECT_EQ(judge_bounds("", "", "", {growth("tests", line, square)}).verdict, Verdict::holds);
   EXPECT_EQ(judge_bounds("", {growth("tests", square, square)}).verdict, Verdict::holds);
   EXPECT_EQ(judge_bounds("", {growth("tests", square, line)}).verdict, Verdict::does_not_hold);
   EXPECT_EQ(judge_bounds("", {growth("tests", n_log_n, n_log_n)}).verdict, Verdict::holds);
@@ -93,7 +93,7 @@ TEST(JudgeBounds, ATimeALittleAboveSaysNothing) {
 TEST(JudgeBounds, TwoSizesAreTooFew) {
   Growth two = growth("tests", line, line);
   two.points.resize(2);
-  const Claim claim = judge_bounds("", {two});
+  const Claim claim = judge_bounds("", "", "", {two});
   EXPECT_EQ(claim.verdict, Verdict::cannot_tell);
   EXPECT_NE(claim.reason.find("2 sizes"), std::string::npos);
 }

@@ -257,9 +257,7 @@ TEST_F(Table1Folder, OneRunCountsByAllClocks) {
   ASSERT_EQ(rates.name, "table1_rates");
   ASSERT_EQ(rates.rows.size(), 4u);
   for (std::size_t volume = 0; volume < 2; ++volume) {
-    const auto number = [&](std::size_t column) {
-      return std::get<double>(rates.rows[2 * volume][column]);
-    };
+    const auto number = [&](std::size_t column) { return std::get<double>(rates.rows[2 * volume][column]); };
     const double broad = std::stod(runs[volume][5]), detection = std::stod(runs[volume][9]),
                  motion = std::stod(runs[volume][10]);
     ASSERT_GT(broad, 0);
