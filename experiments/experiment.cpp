@@ -10,6 +10,7 @@
 #include "base/interruption.hpp"
 #include "base/text.hpp"
 #include "program_2007/ablation.hpp"
+#include "program_2007/figures.hpp"
 #include "program_2007/sensitivity.hpp"
 #include "program_2007/trials.hpp"
 #include "report.hpp"
@@ -50,7 +51,7 @@ Table1Options table1_options(const ExperimentOptions& options) {
 }
 
 /// Runs an experiment other than table1.
-Report run(const ExperimentOptions& options) {
+Report run(const ExperimentOptions& options, const std::filesystem::path& folder) {
   if (options.kind == ExperimentOptions::Kind::scaling) {
     ScalingOptions scaling = scaling_options(options.quick);
     scaling.threads = options.threads.value_or(1);
@@ -85,6 +86,11 @@ Report run(const ExperimentOptions& options) {
     sensitivity.seed = options.seed;
     return run_sensitivity(sensitivity, !options.quiet);
   }
+  if (options.kind == ExperimentOptions::Kind::figures) {
+    FiguresOptions figures = figures_options(options.quick);
+    figures.seed = options.seed;
+    return run_figures(figures, folder, !options.quiet);
+  }
   ArityOptions arity = arity_options(options.quick);
   arity.threads = options.threads.value_or(1);
   arity.seed = options.seed;
@@ -112,6 +118,8 @@ const char* name_of(ExperimentOptions::Kind kind) {
       return "trials";
     case Kind::sensitivity:
       return "sensitivity";
+    case Kind::figures:
+      return "figures";
   }
   return "";
 }
@@ -131,7 +139,7 @@ int run_experiment(const ExperimentOptions& options) {
       return cli::exit_interrupted + interruption.signal();
     }
   } else {
-    result = run(options);
+    result = run(options, folder);
   }
   const Report& report = *result;
   write_report(report, folder);

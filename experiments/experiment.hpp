@@ -11,7 +11,7 @@ namespace supple::experiments {
 
 /// Options of `supple experiment`.
 struct ExperimentOptions {
-  enum class Kind { table1, scaling, arity, volumes, claims, ablation, trials, sensitivity };
+  enum class Kind { table1, scaling, arity, volumes, claims, ablation, trials, sensitivity, figures };
   Kind kind = Kind::table1;
   bool quick = false;
   bool quiet = false;

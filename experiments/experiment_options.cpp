@@ -17,9 +17,9 @@ constexpr const char* footer = R"(Examples:
       A small version of the paper's Table 1: collisions of 3, 6 and 9 objects, with boxes and with spheres.
   supple experiment table1 --output table1
       Five runs of ten simulated minutes for each configuration. Writes CSV files and table1/table1.html.
-  supple experiment table1 --objects 3,6,9 --seconds 0 --wall-clock 600 --output clock
-      Counts the collisions found in ten minutes of detection, as the paper does. Takes hours. Ctrl-C stops
-      it; the same command with --resume goes on.
+  supple experiment table1 --objects 3,6,9 --seconds 0 --program-clock 600 --output clock
+      Counts the collisions found in ten minutes of the whole program, as the paper does. Takes hours. Ctrl-C
+      stops it; the same command with --resume goes on.
   supple experiment table1 --objects 12,20,30 --bounding-volume sphere --sphere-fit box
       More objects, and the spheres of the paper's eq. 3 and 4.
   supple experiment table1 --scene scenes/nine.toml --scene-size 3,4
@@ -37,7 +37,9 @@ constexpr const char* footer = R"(Examples:
   supple experiment trials
       The methods that the paper tried and rejected.
   supple experiment sensitivity
-      Whether other scenes, speeds or levels give the numbers of the paper. Takes an hour.
+      Whether other scenes, speeds or levels give the numbers of the paper. Takes half an hour.
+  supple experiment figures
+      The data of the paper's figures: modules, regions, spheres, pairs of nodes and their boxes.
 
 Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the
 paper's claims hold. The page needs python3 with matplotlib. Without it, the tables are written and the exit
@@ -45,21 +47,21 @@ status is 2. docs/experiments.md describes the experiments.)";
 
 void add_kind(CLI::App& app, ExperimentOptions& options) {
   using Kind = ExperimentOptions::Kind;
-  const std::map<std::string, Kind> kinds{{"table1", Kind::table1}, {"scaling", Kind::scaling},
-                                          {"arity", Kind::arity},   {"volumes", Kind::volumes},
-                                          {"claims", Kind::claims}, {"ablation", Kind::ablation},
-                                          {"trials", Kind::trials}, {"sensitivity", Kind::sensitivity}};
+  const std::map<std::string, Kind> kinds{
+      {"table1", Kind::table1},   {"scaling", Kind::scaling},         {"arity", Kind::arity},
+      {"volumes", Kind::volumes}, {"claims", Kind::claims},           {"ablation", Kind::ablation},
+      {"trials", Kind::trials},   {"sensitivity", Kind::sensitivity}, {"figures", Kind::figures}};
   const auto parse = [&options, kinds](const std::string& given) {
     const auto found = kinds.find(given);
     if (found == kinds.end())
       throw CLI::ValidationError(
           "experiment",
           "there is no experiment '" + given +
-              "'; choose table1, scaling, arity, volumes, claims, ablation, trials or sensitivity");
+              "'; choose table1, scaling, arity, volumes, claims, ablation, trials, sensitivity or figures");
     options.kind = found->second;
   };
-  app.add_option_function<std::string>("table1|scaling|arity|volumes|claims|ablation|trials|sensitivity",
-                                       parse, "The experiment")
+  app.add_option_function<std::string>(
+         "table1|scaling|arity|volumes|claims|ablation|trials|sensitivity|figures", parse, "The experiment")
       ->required()
       ->type_name("");
 }
@@ -171,9 +173,10 @@ void add_options(CLI::App& app, ExperimentOptions& options, cli::Dependences& de
   dependences.push_back({app.get_option("--threads"),
                          [&options] {
                            return options.kind != ExperimentOptions::Kind::claims &&
-                                  options.kind != ExperimentOptions::Kind::trials;
+                                  options.kind != ExperimentOptions::Kind::trials &&
+                                  options.kind != ExperimentOptions::Kind::figures;
                          },
-                         "another experiment than claims and trials, which have one thread"});
+                         "another experiment than claims, trials and figures, which have one thread"});
   cli::add_number(app, "--seed", options.seed, 0, 1'000'000'000, "Seed of the random numbers (default: 1)");
   add_table1(app, options, dependences);
   app.add_flag("--quiet", options.quiet, "Print no tables and no progress");

@@ -266,6 +266,63 @@ def sensitivity_plots(rows):
                      "ratio of collisions", [row["setting"] for row in chosen], {n: p for n, p in groups.items() if p}, True)
 
 
+def modules_plots(rows):
+    """Figure 1: the modules as boxes in the order in which they run, with their times."""
+    figure, axes = new_plot("Figure 1: modules of the program", "", "", height=2.6)
+    axes.axis("off")
+    for place, row in enumerate(rows):
+        axes.text(place, 0.5, f"{row['module']}\n{rounded(float(row['ms']), 2)} ms per {row['per']}", ha="center", va="center",
+                  bbox={"boxstyle": "round,pad=0.7", "facecolor": "#eef4fb", "edgecolor": COLORS[0]})
+        if place + 1 < len(rows):
+            axes.annotate("", (place + 0.62, 0.5), (place + 0.38, 0.5), arrowprops={"arrowstyle": "->", "color": "#555"})
+    axes.annotate("", (1, 0.86), (len(rows) - 1, 0.86),
+                  arrowprops={"arrowstyle": "->", "color": "#555", "connectionstyle": "bar,fraction=0.06"})
+    axes.text((len(rows)) / 2, 1.02, "each step", ha="center", color="#555")
+    axes.set_xlim(-0.5, len(rows) - 0.5)
+    axes.set_ylim(0, 1.1)
+    yield svg_of(figure)
+
+
+def regions_plots(rows):
+    """Figure 2: the tree of regions; a region is red with two objects or more, blue with one, and white without."""
+    figure, axes = new_plot("Figure 2: regions of the broad phase; inner regions are grey", "", "level", height=3.4)
+    places = {}
+    levels = sorted({int(row["level"]) for row in rows})
+    for level in levels:
+        of_level = sorted((row for row in rows if int(row["level"]) == level), key=lambda row: int(row["number"]))
+        for i, row in enumerate(of_level):
+            x, y = (i + 0.5) / len(of_level), level
+            places[int(row["number"])] = (x, y)
+            parent = places.get((int(row["number"]) - 1) // 8) if level else None
+            if parent:
+                axes.plot([parent[0], x], [parent[1], y], color="#bbb", linewidth=0.7, zorder=1)
+            count = int(row["objects"])
+            color = "#cccccc" if row["leaf"] == "0" else "#cc3311" if count > 1 else COLORS[6] if count else "white"
+            axes.plot(x, y, "s", color=color, markeredgecolor="#555", markersize=9 if level < 2 else 5, zorder=2)
+            if row["leaf"] == "1" and count > 1:
+                axes.annotate(str(count), (x, y), (0, -12), textcoords="offset points", ha="center", fontsize=7)
+    axes.grid(visible=False)
+    axes.set_xticks([])
+    axes.set_yticks(levels)
+    axes.set_ylim(max(levels) + 0.4, -0.4)
+    yield svg_of(figure)
+
+
+def descent_plots(rows):
+    """Figure 4: the list of pairs by level, and the bound of the paper."""
+    points = {"pairs of nodes that collide": [(int(row["level"]) + 1, int(row["pairs"])) for row in rows],
+              "pairs of leaves": [(int(row["level"]) + 1, int(row["leaf_pairs"])) for row in rows if int(row["leaf_pairs"])],
+              "the paper's at most 16 of each": [(int(row["level"]) + 1, 16 ** int(row["level"])) for row in rows
+                                                 if int(row["level"]) < 3]}
+    figure, axes = new_plot("Figure 4: the narrow phase, level by level", "level", "pairs")
+    for (name, of_name), color in zip(points.items(), COLORS):
+        axes.plot([x - 1 for x, _ in of_name], [y for _, y in of_name], marker="o", markersize=5, label=name, color=color,
+                  linestyle="--" if "at most" in name else "-")
+    axes.set_yscale("log")
+    axes.set_xticks([int(row["level"]) for row in rows])
+    yield svg_of(figure)
+
+
 def clocks_plots(rows):
     """The ratio by each clock and in the paper, with standard errors."""
     clocks = (("simulated", "simulated time"), ("detection", "detection alone"), ("program", "whole program"), ("paper", "the paper"))
@@ -312,6 +369,7 @@ def plots_of(folder, name, parameters):
         return table1_plots(rows_of(folder, name), rows_of(folder, "table1_program_means"),
                             float(parameters["--program-clock"]), ", by the clock of the program")
     plots = {"ablation": ablation_plots, "trials": trials_plots, "sensitivity": sensitivity_plots, "table1_clocks": clocks_plots,
+             "figures_1": modules_plots, "figures_2": regions_plots, "figures_4": descent_plots,
              "scaling_broad_phase": broad_phase_plots, "scaling_vertices": vertices_plots, "arity_objects": arity_plots,
              "volumes": volumes_plots, "volumes_builds": volumes_plots}
     return plots[name](rows_of(folder, name)) if name in plots else ()
@@ -335,13 +393,16 @@ def table_of(folder, described):
                  [[cell_of(cell, digits[i]) for i, cell in enumerate(row)] for row in rows], texts, described["caption"])
 
 
+def html_of_claim(claim):
+    verdict = claim["verdict"].strip()
+    kind = {"Holds.": "holds", "Does not hold.": "fails"}.get(verdict, "open")
+    return (f'<div class="claim {kind}"><p>{escaped(claim["paper"])}</p>'
+            f"<p><b>{verdict}</b> {escaped(claim['reason'])}</p></div>")
+
+
 def html_of(folder, report):
-    classes = {"Holds.": "holds", "Does not hold.": "fails"}
-    parts = [f"<p>{escaped(report['summary'])}</p>", "<h2>What holds</h2>"]
-    for claim in report["claims"]:
-        verdict = claim["verdict"].strip()
-        parts.append(f'<div class="claim {classes.get(verdict, "open")}"><p>{escaped(claim["paper"])}</p>'
-                     f"<p><b>{verdict}</b> {escaped(claim['reason'])}</p></div>")
+    parts = [f"<p>{escaped(report['summary'])}</p>", *(["<h2>What holds</h2>"] if report["claims"] else [])]
+    parts += map(html_of_claim, report["claims"])
     for section in report["sections"]:
         parts += [f"<h2>{escaped(section['heading'])}</h2>", *(f"<p>{escaped(text)}</p>" for text in section["paragraphs"])]
         for described in section["tables"]:

@@ -172,15 +172,19 @@ double in_ten_minutes_of_program(std::uint64_t collisions, const RunCounts& run)
   return in_ten_minutes(collisions, run.detection_seconds + run.motion_seconds);
 }
 
+Simulation build_variant(cli::Input& input, const Variant& variant, std::uint32_t threads) {
+  input.simulation = options_of(variant, input, threads);
+  for (cli::InputObject& object : input.objects) object.options.octree = variant.method.octree;
+  return cli::build_simulation(input);
+}
+
 std::vector<RunCounts> run_scene(const Table1Scene& scene, std::span<const Variant> variants,
                                  std::uint64_t seed, std::uint32_t threads,
                                  const std::function<bool(const RunCounts&)>& go_on,
                                  const std::function<void(cli::Input&)>& change) {
   cli::Input input = read_scene(scene, variants.front().method.integrator, seed);
   if (change) change(input);
-  input.simulation = options_of(variants.front(), input, threads);
-  for (cli::InputObject& object : input.objects) object.options.octree = variants.front().method.octree;
-  Simulation simulation = cli::build_simulation(input);
+  Simulation simulation = build_variant(input, variants.front(), threads);
   std::vector<Follower> followers;
   for (const Variant& variant : variants.subspan(1))
     followers.emplace_back(variant, input, simulation, threads);

@@ -13,6 +13,7 @@
 #include "base/output_file.hpp"
 #include "fit.hpp"
 #include "inputs/inputs.hpp"
+#include "supple/simulation.hpp"
 #include "table.hpp"
 #include "table1/table1_options.hpp"
 
@@ -49,6 +50,9 @@ struct Variant {
   Table1Method method;
   BoundingVolume volume;
 };
+
+/// The simulation of an input as a variant sees it; its options are set in the input.
+Simulation build_variant(cli::Input& input, const Variant& variant, std::uint32_t threads);
 
 /// One run of a scene, which `change` may change. All variants see the same motion; the counts of a variant
 /// end when `go_on(its counts so far)` returns false, and the run ends after the last. The counts are the
