@@ -9,7 +9,7 @@ BASE ?= HEAD
 
 SECONDS ?= 30
 
-.PHONY: help demo program experiment test test-python build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
+.PHONY: help demo program experiment paper test test-python build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
 
 help:
 	@echo 'make demo     build the program, drop a cloth over a ball, collide nine objects, write a page that shows them'
@@ -25,6 +25,7 @@ help:
 	@echo 'make check    format, include order, prose, changelog, file sizes, public interface, generated documents'
 	@echo 'make format   format the C++ sources'
 	@echo 'make docs     write the documents that are generated from the command line and the headers'
+	@echo 'make paper    repeat the paper: every figure, its table and its claims, on one page; QUICK=1 takes five minutes'
 	@echo 'make figures  draw docs/figures/*.svg from their text (needs graphviz)'
 	@echo 'make clean    remove build/'
 
@@ -50,6 +51,10 @@ program: dependencies
 # The program of the paper's experiments. The generated documents have its options, too.
 experiment: program
 	cmake --build --preset release -j $(JOBS) --target supple_experiment
+
+# Hours; QUICK=1 runs small versions. What is complete in build/paper is not repeated.
+paper: experiment
+	experiments/paper.py $(if $(QUICK),--quick --output build/paper_quick,--output build/paper) --program build/release/bin/supple
 
 # Without the tests that compile the library again and those that take long.
 test: build
@@ -108,6 +113,7 @@ check: experiment
 	tools/make_api.py --check
 	tools/make_python.py --check
 	tools/check_api.py
+	tools/make_paper.py --check
 	tools/generate_docs.sh --check build/release/bin/supple
 
 format:
@@ -124,6 +130,7 @@ docs: experiment
 	tools/install_dependencies.sh --ci
 	tools/make_api.py
 	tools/make_python.py
+	tools/make_paper.py
 	tools/generate_docs.sh build/release/bin/supple
 
 clean:

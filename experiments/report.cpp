@@ -80,7 +80,8 @@ void write_report(const Report& report, const fs::path& folder) {
   for (const Section& section : report.sections) {
     Json tables = Json::array();
     for (const Table& table : section.tables) {
-      write_file(folder / (table.name + ".csv"), csv_head() + csv_of(table));
+      write_file(folder / (table.name + ".csv"),
+                 (table.head.empty() ? csv_head() : table.head) + csv_of(table));
       Json columns = Json::array();
       for (const Column& column : table.columns)
         columns.push_back({{"heading", column.heading}, {"digits", column.digits}});

@@ -27,6 +27,8 @@ struct Table {
   std::string caption;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows{};
+  /// Comments of a file that an earlier program began, with its commit; empty: those of this program.
+  std::string head{};
 
   /// Throws `Error` unless there is a cell for each column.
   void add(std::vector<Cell> row);

@@ -74,9 +74,19 @@ Table means_table(const std::vector<Runs>& all, RunClock clock) {
   return table;
 }
 
+/// The comments at the head of a file: its runs may be of an earlier program, which --resume completes.
+std::string head_of(const fs::path& path) {
+  const std::string text = cli::read_text(path);
+  std::size_t end = 0;
+  while (end < text.size() && text[end] == '#') end = text.find('\n', end) + 1;
+  return text.substr(0, end);
+}
+
 Section section_of(const std::string& heading, const std::string& paragraph, const std::vector<Runs>& all,
-                   std::uint64_t first_seed, RunClock clock) {
-  return {heading, {paragraph}, {means_table(all, clock), runs_table(all, first_seed, clock)}};
+                   std::uint64_t first_seed, RunClock clock, const fs::path& folder) {
+  Table runs = runs_table(all, first_seed, clock);
+  runs.head = head_of(folder / (runs.name + ".csv"));
+  return {heading, {paragraph}, {means_table(all, clock), std::move(runs)}};
 }
 
 std::string paragraph_of_program(const std::vector<Runs>& program) {
@@ -198,11 +208,11 @@ std::optional<Report> run_table1(const Table1Options& options, const fs::path& f
         "its scene and the speed of its objects. So compare rows with each other, not single "
         "numbers with those of the paper. Its runs took ten minutes of real time. " +
             paragraph_of_strain(steps),
-        steps, options.seed, RunClock::simulated));
+        steps, options.seed, RunClock::simulated, folder));
   if (!program.empty())
     report.sections.push_back(section_of("Counted by the clock of the whole program",
                                          paragraph_of_program(program) + ' ' + paragraph_of_strain(program),
-                                         program, options.seed, RunClock::program));
+                                         program, options.seed, RunClock::program, folder));
   report.sections.push_back({"The paper's own numbers", {}, {paper_arithmetic()}});
   return report;
 }

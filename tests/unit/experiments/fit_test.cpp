@@ -70,24 +70,57 @@ double square(double n) {
 
 TEST(JudgeBounds, ABoundIsFromAbove) {
   EXPECT_EQ(judge_bounds("", "", "", {growth("tests", line, square)}).verdict, Verdict::holds);
-  EXPECT_EQ(judge_bounds("", {growth("tests", square, square)}).verdict, Verdict::holds);
-  EXPECT_EQ(judge_bounds("", {growth("tests", square, line)}).verdict, Verdict::does_not_hold);
-  EXPECT_EQ(judge_bounds("", {growth("tests", n_log_n, n_log_n)}).verdict, Verdict::holds);
+  EXPECT_EQ(judge_bounds("", "", "", {growth("tests", square, square)}).verdict, Verdict::holds);
+  EXPECT_EQ(judge_bounds("", "", "", {growth("tests", square, line)}).verdict, Verdict::does_not_hold);
+  EXPECT_EQ(judge_bounds("", "", "", {growth("tests", n_log_n, n_log_n)}).verdict, Verdict::holds);
 }
 
 TEST(JudgeBounds, TestsDecideAndTimesStandBeside) {
-  const Claim claim = judge_bounds("", {growth("time", square, line), growth("tests", line, line)});
+  const Claim claim = judge_bounds("", "", "", {growth("time", square, line), growth("tests", line, line)});
   EXPECT_EQ(claim.verdict, Verdict::holds);
   EXPECT_NE(claim.reason.find("2.00"), std::string::npos);
-  EXPECT_EQ(judge_bounds("", {growth("time", line, line), growth("tests", square, line)}).verdict,
+  EXPECT_EQ(judge_bounds("", "", "", {growth("time", line, line), growth("tests", square, line)}).verdict,
             Verdict::does_not_hold);
 }
 
 TEST(JudgeBounds, ATimeALittleAboveSaysNothing) {
   const auto a_little = [](double n) { return std::pow(n, 1.2); };
-  EXPECT_EQ(judge_bounds("", {growth("time", a_little, line)}).verdict, Verdict::cannot_tell);
-  EXPECT_EQ(judge_bounds("", {growth("tests", a_little, line)}).verdict, Verdict::does_not_hold);
-  EXPECT_EQ(judge_bounds("", {growth("time", square, line)}).verdict, Verdict::does_not_hold);
+  EXPECT_EQ(judge_bounds("", "", "", {growth("time", a_little, line)}).verdict, Verdict::cannot_tell);
+  EXPECT_EQ(judge_bounds("", "", "", {growth("tests", a_little, line)}).verdict, Verdict::does_not_hold);
+  EXPECT_EQ(judge_bounds("", "", "", {growth("time", square, line)}).verdict, Verdict::does_not_hold);
+}
+
+TEST(JudgeBounds, TheNumberIsTheExponentWithTheGreatestExcess) {
+  const Claim claim =
+      judge_bounds("", "", "", {growth("tests", line, square), growth("tests", square, line)});
+  EXPECT_NEAR(claim.number->mean, 2, 1e-9);
+  EXPECT_NE(claim.quantity.find("1.00"), std::string::npos) << claim.quantity;
+}
+
+TEST(Estimates, RatioOfSumsHasTheErrorOfTheJackknife) {
+  const std::vector<double> a{2, 4, 9}, b{1, 2, 3};
+  const Estimate ratio = ratio_of_sums(a, b);
+  EXPECT_DOUBLE_EQ(ratio.mean, 15.0 / 6);
+  // Without each pair: 13/5, 11/4 and 6/3.
+  const std::vector<double> without{2.6, 2.75, 2};
+  const double mean = (2.6 + 2.75 + 2) / 3;
+  double squares = 0;
+  for (const double value : without) squares += (value - mean) * (value - mean);
+  EXPECT_DOUBLE_EQ(ratio.error, std::sqrt(2.0 / 3 * squares));
+  EXPECT_TRUE(std::isnan(ratio_of_sums(a, std::vector<double>{0, 0, 0}).mean));
+  EXPECT_TRUE(std::isnan(ratio_of_sums(std::vector<double>{1}, std::vector<double>{1}).error));
+}
+
+TEST(Estimates, VerdictsNeedTwoStandardErrors) {
+  EXPECT_EQ(above({2, 0.4}, 1), Verdict::holds);
+  EXPECT_EQ(above({2, 0.6}, 1), Verdict::cannot_tell);
+  EXPECT_EQ(above({0, 0.4}, 1), Verdict::does_not_hold);
+  EXPECT_EQ(within({1, 0.2}, 0.5, 2), Verdict::holds);
+  EXPECT_EQ(within({1.9, 0.2}, 0.5, 2), Verdict::cannot_tell);
+  EXPECT_EQ(within({3, 0.2}, 0.5, 2), Verdict::does_not_hold);
+  const Estimate ratio = quotient({6, 0.6}, {2, 0.1});
+  EXPECT_DOUBLE_EQ(ratio.mean, 3);
+  EXPECT_NEAR(ratio.error, 3 * std::hypot(0.1, 0.05), 1e-12);
 }
 
 TEST(JudgeBounds, TwoSizesAreTooFew) {

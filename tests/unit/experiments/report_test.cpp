@@ -59,12 +59,13 @@ TEST(Rounded, HasSignificantDigits) {
 TEST(Report, SaysWhatHolds) {
   Report report;
   report.title = "Title";
-  report.claims = {{"one", Verdict::holds, "because"},
-                   {"two", Verdict::does_not_hold, "for"},
-                   {"three", Verdict::cannot_tell, "as"}};
+  report.claims = {{"first", "7", "one", Verdict::holds, "because"},
+                   {"second", "5, 6", "two", Verdict::does_not_hold, "for"},
+                   {"third", "", "three", Verdict::cannot_tell, "as"}};
   report.sections.push_back({"Section", {"Paragraph"}, {small_table()}});
   const std::string text = text_of(report);
-  EXPECT_NE(text.find("- one\n  Holds. because\n- two\n  Does not hold. for\n- three\n  Undecided. as\n"),
+  EXPECT_NE(text.find("- one (section 7)\n  Holds. because\n- two (section 5, 6)\n  Does not hold. for\n- "
+                      "three\n  Undecided. as\n"),
             std::string::npos);
 }
 

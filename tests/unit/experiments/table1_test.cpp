@@ -217,9 +217,13 @@ TEST_F(Table1Folder, ResumeRepeatsNoCompleteRun) {
   std::string line;
   for (const std::string& field : marked) line += (line.empty() ? "" : ",") + field;
   std::ofstream(folder_ / "table1_runs.csv", std::ios::binary)
+      << "# commit: earlier\n"
       << whole.substr(0, end_of_header) << line << '\n'
       << whole.substr(end_of_run, 20);
-  ASSERT_TRUE(run(true));
+  const auto report = run(true);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->sections[1].tables[1].head.find("# commit: earlier\n"), 0u)
+      << "the runs keep their commit";
   const auto resumed = rows("table1_runs.csv");
   ASSERT_EQ(resumed.size(), 4u);
   EXPECT_EQ(resumed.front(), marked);
