@@ -58,7 +58,8 @@ def _column(texts: list[str]) -> npt.NDArray[Any]:
 
 
 def experiment(name: str, output: str | os.PathLike[str] | None = None, **options: Any) -> Experiment:
-    """Runs an experiment of the paper: table1, scaling, arity, volumes or claims.
+    """Runs an experiment of the paper: table1, scaling, arity, volumes, claims, ablation, trials, sensitivity or
+    figures.
 
     Options are those of `supple experiment --help` with underscores: `experiment("table1", quick=True,
     objects=(3, 6))`. `output` is the folder of the tables and the page; without it, a temporary one. Needs
