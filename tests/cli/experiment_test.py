@@ -210,7 +210,7 @@ class Experiment(ProgramTest):
             self.assertEqual((self.folder / "paper" / name).read_bytes()[8:12], b"WEBP")
 
     def test_unusable(self):
-        self.assert_one_line_error(run("experiment", "table2"), "table2", "table1, scaling, arity, volumes, claims, ablation, trials or sensitivity")
+        self.assert_one_line_error(run("experiment", "table2"), "table2", "table1, scaling, arity, volumes, claims, ablation, trials, sensitivity or figures")
         self.assert_one_line_error(run("experiment", "scaling", "--runs", "3"), "--runs", "table1")
         self.assert_one_line_error(run("experiment", "arity", "--max-level", "3"), "--max-level", "table1")
         for arguments, parts in (
