@@ -6,10 +6,11 @@ usage: make_paper.py [--check]
 With --check it writes nothing and fails when a page is out of date, so each number on these pages is that of a
 committed table. The templates are Jinja2; they have these functions:
 
-  verdict(ID)                  the verdict on a claim with its number: **Holds**: …
+  verdict(ID, EXPECTED)        the verdict on a claim with its number; fails if it is not EXPECTED, when that is given
   number(ID)                   only the number and its interval
   reason(ID)                   what was measured
   rows(FILE)                   all rows, whose numbers range_of(row, COLUMN) and short(text) write
+  runs(FILE)                   the number of runs with different seeds
   strain(FILE, COLUMN)         the least and the greatest of a column, in percent
   commit(FILE), command(FILE), machine(FILE)   from the head of FILE.csv
   claims_table()               all claims of the paper in its order
@@ -65,9 +66,11 @@ class Results:
         claim = self.claim(name)
         return interval_of(claim["number"], claim["error"])
 
-    def verdict(self, name):
+    def verdict(self, name, expected=None):
         claim = self.claim(name)
-        number = f": {self.number(name)} ({claim['quantity']})" if claim["number"] else ""
+        if expected not in (None, claim["verdict"]):
+            raise ValueError(f"the template expects of {name}: {expected}; the tables say: {claim['verdict']}")
+        number = f" ({claim['quantity']}: {self.number(name)})" if claim["number"] else ""
         return f"**{claim['verdict']}**{number}."
 
     def reason(self, name):
@@ -93,7 +96,9 @@ class Results:
             "commit": lambda file: self.table(file)[0]["commit"],
             "command": lambda file: self.table(file)[0]["command"],
             "machine": lambda file: self.table(file)[0]["processor"],
+            "holds": "Holds", "fails": "Does not hold",
             "rows": lambda file: self.table(file)[1],
+            "runs": lambda file: len({row["seed"] for row in self.table(file)[1]}),
         }
 
 
@@ -101,8 +106,8 @@ def interval_of(number, error, digits=3):
     if not number:
         return "–"
     value = float(number)
-    if not error:
-        return rounded(value, digits)
+    if not error:  # counted, not measured
+        return f"{value:,.0f}" if value == int(value) else rounded(value, digits)
     low, high = value - 2 * float(error), value + 2 * float(error)
     return f"{rounded(value, digits)} [{rounded(low, digits)}, {rounded(high, digits)}]"
 
@@ -112,9 +117,9 @@ def wrapped(page):
     parts = []
     for part in re.split(r"\n\n+", page.strip()):
         if not part.startswith(("|", "#", "```", "<", "- ", "![")):
-            part = textwrap.fill(part, COLUMNS, break_long_words=False, break_on_hyphens=False)
+            part = textwrap.fill(" ".join(part.split()), COLUMNS, break_long_words=False, break_on_hyphens=False)
         elif part.startswith("- "):
-            part = "\n".join(textwrap.fill(item, COLUMNS, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+            part = "\n".join(textwrap.fill(" ".join(item.split()), COLUMNS, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
                              for item in re.split(r"\n(?=- )", part))
         parts.append(part)
     return "\n\n".join(parts) + "\n"

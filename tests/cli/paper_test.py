@@ -1,12 +1,18 @@
-"""Runs every command in docs/paper.md. Each row has a command, or says that the part is not built."""
+"""Runs every command in docs/paper.md. Each row has a command, or says that the part is not built. The numbers on the
+pages are those of committed tables."""
 
+import importlib.util
+import json
 import os
 import re
+import subprocess
+import sys
 import unittest
 
-from program import ROOT, ProgramTest
+from program import ROOT, ProgramTest, run
 
-PAGE = (ROOT / "docs/paper.md").read_text()
+PAGE = (ROOT / "docs/paper.md").read_text().split("\n## All claims")[0]
+RESULTS = ROOT / "benchmarks/results/paper"
 
 
 def rows():
@@ -21,6 +27,33 @@ class Paper(ProgramTest):
         for row in rows():
             self.assertEqual(len(row), 4, row)
             self.assertTrue(row[2].startswith("`supple ") or row[1] in ("not built", "not used"), row)
+
+    @unittest.skipUnless(importlib.util.find_spec("jinja2"), "needs jinja2")
+    def test_the_pages_are_made_from_the_tables(self):
+        done = subprocess.run([sys.executable, ROOT / "tools/make_paper.py", "--check"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_each_table_names_its_commit_and_machine(self):
+        tables = sorted(RESULTS.glob("*/*.csv"))
+        self.assertGreater(len(tables), 30)
+        commits = set()
+        for path in tables:
+            head = dict(line[2:].split(": ", 1) for line in path.read_text().splitlines() if line.startswith("# "))
+            self.assertLessEqual({"date", "commit", "processor", "compiler", "command"}, head.keys(), path)
+            self.assertRegex(head["commit"], "^[0-9a-f]+$", f"{path}: from changed sources")
+            commits.add(head["commit"])
+        if subprocess.run(["git", "rev-parse", "--is-shallow-repository"], cwd=ROOT, capture_output=True, text=True).stdout == "false\n":
+            for commit in commits:
+                subprocess.run(["git", "cat-file", "-e", commit], cwd=ROOT, check=True)
+
+    def test_level_allowed_changes_the_work_of_its_example(self):
+        command = next(row[2].strip("`") for row in rows() if "--scene-octree-max-level 3" in row[2] and "simulate" in row[2])
+        tests = []
+        for level in ("2", "3"):
+            done = run(*command.replace("max-level 3", f"max-level {level}").split()[1:], "--quiet", "--json", "-", folder=ROOT)
+            self.assertEqual(done.error, "")
+            tests.append(sum(frame["stats"]["object_pairs_tested"] for frame in json.loads(done.out)["frames"]))
+        self.assertLess(2 * tests[1], tests[0])
 
     @unittest.skipUnless(os.environ.get("SUPPLE_LONG_TESTS"), "runs experiments; the test cli.paper_commands runs it")
     def test_each_command_runs(self):
