@@ -2,9 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
+#include <vector>
 
 namespace supple::experiments {
 
@@ -58,6 +61,26 @@ Estimate estimate_of(std::span<const double> values) {
   const double mean = sum / count;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return {mean, values.size() < 2 ? nan : std::sqrt(squares / (count - 1) / count)};
+}
+
+namespace {
+
+double middle(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+}  // namespace
+
+Estimate median_of(std::span<const double> values) {
+  const double median = middle({values.begin(), values.end()});
+  if (values.size() < 2) return {median, std::numeric_limits<double>::quiet_NaN()};
+  std::vector<double> deviations;
+  for (const double value : values) deviations.push_back(std::abs(value - median));
+  return {median,
+          1.4826 * middle(deviations) * std::sqrt(std::numbers::pi / 2 / static_cast<double>(values.size()))};
 }
 
 Estimate ratio_of_sums(std::span<const double> a, std::span<const double> b) {

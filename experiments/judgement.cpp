@@ -48,7 +48,7 @@ Verdict within(const Estimate& quantity, double low, double high) {
 Estimate ratio_of(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) ratios.push_back(a[i] / b[i]);
-  return estimate_of(ratios);
+  return median_of(ratios);
 }
 
 Verdict both(Verdict a, Verdict b) {

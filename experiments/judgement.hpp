@@ -34,7 +34,7 @@ Verdict below(const Estimate& quantity, double limit);
 Verdict above(const Estimate& quantity, double limit);
 /// Whether a quantity is between two limits, in the same way.
 Verdict within(const Estimate& quantity, double low, double high);
-/// The ratios a[i] / b[i] of times that were measured in turn.
+/// The median of the ratios a[i] / b[i] of times that were measured in turn.
 Estimate ratio_of(const std::vector<double>& a, const std::vector<double>& b);
 
 /// `does_not_hold` if one of the two is, otherwise `cannot_tell` if one of the two is.

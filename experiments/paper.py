@@ -17,12 +17,17 @@ import pathlib
 import subprocess
 import sys
 
-import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
-from PIL import Image
-from report import COLORS, escaped, html_of_claim, page, plots_of, rows_of, table_of
+from report import COLORS, escaped, html_of_claim, page, plots_of, rows_of, table_of, try_debians_python
+
+try:
+    import numpy as np
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+    from PIL import Image
+except ImportError:
+    try_debians_python()
+    raise
 
 EXPERIMENTS = ("figures", "table1", "scaling", "arity", "volumes", "claims", "ablation", "trials", "sensitivity")
 LIGHT = np.array([0.4, -0.6, 0.7]) / np.linalg.norm([0.4, -0.6, 0.7])

@@ -47,6 +47,13 @@ def stop(message):
     sys.exit(2)
 
 
+def try_debians_python():
+    """Starts again with Debian's Python, to which Debian's packages belong; another one can be the first in PATH."""
+    debian = pathlib.Path("/usr/bin/python3")
+    if debian.exists() and debian.resolve() != pathlib.Path(sys.executable).resolve():
+        os.execv(debian, [debian, *sys.argv])
+
+
 # --- pages ---
 
 
@@ -418,10 +425,7 @@ def main():
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        # Debian's package belongs to Debian's Python, and another one can be the first in PATH.
-        debian = pathlib.Path("/usr/bin/python3")
-        if debian.exists() and debian.resolve() != pathlib.Path(sys.executable).resolve():
-            os.execv(debian, [debian, *sys.argv])
+        try_debians_python()
     try:
         for path in reports:
             report = json.loads(path.read_text(encoding="utf-8"))

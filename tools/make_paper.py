@@ -22,15 +22,19 @@ import re
 import sys
 import textwrap
 
-import jinja2
-
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "benchmarks/results/paper"
 PAGES = ("paper.md", "what_holds.md")
 COLUMNS = 110
 
 sys.path.insert(0, str(ROOT / "experiments"))
-from report import rounded  # noqa: E402
+from report import rounded, try_debians_python  # noqa: E402
+
+try:
+    import jinja2
+except ImportError:
+    try_debians_python()
+    raise
 
 
 def read(path):

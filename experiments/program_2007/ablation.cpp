@@ -202,7 +202,7 @@ Report run_ablation(const AblationOptions& options, bool show_progress) {
   Table steps{
       "ablation",
       "Milliseconds of a step (the fastest round), and how many times faster than the row above and than "
-      "the first row (mean over the rounds)",
+      "the first row (median of the rounds)",
       {{"scene", "Scene"},
        {"change", "One more choice of today"},
        {"refit_ms", "Refit ms"},

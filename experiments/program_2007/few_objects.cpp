@@ -99,7 +99,7 @@ FewObjects measure_few_objects(const FewObjectsOptions& options, Work& work) {
   constexpr std::size_t largest_of_paper = 9;
   FewObjects result;
   result.table = {"scaling_few_objects",
-                  "Microseconds of a step (mean over the rounds), and the ratio to the octree of 2007",
+                  "Microseconds of a step (median of the rounds), and the ratio to the octree of 2007",
                   {{"objects", "Objects"},
                    {"method", "Method"},
                    {"step_us", "Step µs"},

@@ -355,7 +355,7 @@ Report run_trials(const TrialOptions& options, bool show_progress) {
   if (options.with_humans) scenes.push_back({Table1Scene::Source::built_in, "three_humans"});
   Table table{
       "trials",
-      "A step of each trial: time (the fastest round) and its ratio to the hierarchy (mean over the rounds)",
+      "A step of each trial: time (the fastest round) and its ratio to the hierarchy (median of the rounds)",
       {{"scene", "Scene"},
        {"trial", "Trial"},
        {"ms", "ms"},

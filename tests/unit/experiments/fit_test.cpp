@@ -111,6 +111,15 @@ TEST(Estimates, RatioOfSumsHasTheErrorOfTheJackknife) {
   EXPECT_TRUE(std::isnan(ratio_of_sums(std::vector<double>{1}, std::vector<double>{1}).error));
 }
 
+TEST(Estimates, TheMedianIgnoresOutliers) {
+  const Estimate median = median_of(std::vector<double>{1.0, 1.1, 0.9, 1.05, 40});
+  EXPECT_DOUBLE_EQ(median.mean, 1.05);
+  EXPECT_LT(median.error, 0.1);
+  EXPECT_DOUBLE_EQ(median_of(std::vector<double>{1, 3}).mean, 2);
+  EXPECT_TRUE(std::isnan(median_of(std::vector<double>{1}).error));
+  EXPECT_TRUE(std::isnan(median_of({}).mean));
+}
+
 TEST(Estimates, VerdictsNeedTwoStandardErrors) {
   EXPECT_EQ(above({2, 0.4}, 1), Verdict::holds);
   EXPECT_EQ(above({2, 0.6}, 1), Verdict::cannot_tell);
