@@ -118,7 +118,7 @@ FewObjects measure_few_objects(const FewObjectsOptions& options, Work& work) {
       ratios[m] = ratio_of(costs.seconds[m], costs.seconds[octree_of_2007_method]);
       std::vector<double> microseconds = costs.seconds[m];
       for (double& number : microseconds) number *= 1e6;
-      const Estimate step = estimate_of(microseconds);
+      const Estimate step = median_of(microseconds);
       result.table.add({std::uint64_t{count}, std::string(method_names[m]), step.mean, step.error,
                         ratios[m].mean, ratios[m].error, costs.tests[m], costs.pairs});
     }
