@@ -154,18 +154,18 @@ def figure5(frames, frame):
     return figure
 
 
-def image_of(figure):
+def image_of(figure, dpi):
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=100)
+    figure.savefig(buffer, format="png", dpi=dpi)
     return Image.open(buffer).convert("RGB")
 
 
 def write_videos(output):
     frames = Frames(output / "figures")
     for name, draw in (("figure3", figure3), ("figure5", figure5)):
-        images = [image_of(draw(frames, frame)) for frame in range(len(frames.positions))]
-        images[0].save(output / f"{name}.webp", save_all=True, append_images=images[1:], duration=60, loop=0, quality=70, method=4)
-        image_of(draw(frames, frames.middle)).save(output / f"{name}.png", optimize=True)
+        images = [image_of(draw(frames, frame), 75) for frame in range(len(frames.positions))]
+        images[0].save(output / f"{name}.webp", save_all=True, append_images=images[1:], duration=60, loop=0, quality=60, method=4)
+        image_of(draw(frames, frames.middle), 110).save(output / f"{name}.png", optimize=True)
 
 
 # --- the page ---
