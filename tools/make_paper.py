@@ -54,7 +54,7 @@ class Results:
             for row in rows:
                 # table1_program repeats the claims of table1 with fewer runs.
                 if row["id"] not in self.claims or path.parent.name == "table1":
-                    self.claims[row["id"]] = row | {"command": head["command"].split(" --output")[0]}
+                    self.claims[row["id"]] = row | {"command": re.sub(" --(quiet|resume|output [^ ]*)", "", head["command"])}
 
     def table(self, file):
         if file not in self.tables:
