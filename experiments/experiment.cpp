@@ -84,7 +84,7 @@ Report run(const ExperimentOptions& options, const std::filesystem::path& folder
     SensitivityOptions sensitivity = sensitivity_options(options.quick);
     sensitivity.threads = options.threads;
     sensitivity.seed = options.seed;
-    return run_sensitivity(sensitivity, !options.quiet);
+    return run_sensitivity(sensitivity, folder, options.resume, !options.quiet);
   }
   if (options.kind == ExperimentOptions::Kind::figures) {
     FiguresOptions figures = figures_options(options.quick);

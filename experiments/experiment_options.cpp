@@ -154,9 +154,15 @@ void add_table1(CLI::App& app, ExperimentOptions& options, cli::Dependences& dep
   table1_only(fused);
   dependences.push_back(
       {fused, [&options] { return options.method.scene.comparison.lazy_refit; }, "--lazy-refit on"});
-  table1_only(app.add_flag("--resume", options.resume,
-                           "Go on with the experiment in the output folder; its complete runs are not "
-                           "repeated"));
+  CLI::Option* const resume = app.add_flag("--resume", options.resume,
+                                           "table1 and sensitivity: Go on with the experiment in the output "
+                                           "folder; what is complete is not repeated");
+  dependences.push_back({resume,
+                         [&options] {
+                           return options.kind == ExperimentOptions::Kind::table1 ||
+                                  options.kind == ExperimentOptions::Kind::sensitivity;
+                         },
+                         "table1 or sensitivity"});
 }
 
 }  // namespace

@@ -109,6 +109,12 @@ std::string csv_of(const std::vector<Cell>& row) {
   return result + '\n';
 }
 
+std::string head_of(std::string_view text) {
+  std::size_t end = 0;
+  while (end < text.size() && text[end] == '#') end = std::min(text.find('\n', end), text.size() - 1) + 1;
+  return std::string(text.substr(0, end));
+}
+
 CsvText parse_csv(std::string_view text) {
   CsvText result;
   std::vector<std::string> row(1);

@@ -52,6 +52,9 @@ struct CsvText {
 };
 CsvText parse_csv(std::string_view text);
 
+/// The comments at the head of CSV text.
+std::string head_of(std::string_view text);
+
 /// The value with `digits` significant digits. Only numbers far from 1 are in scientific notation.
 std::string rounded(double value, int digits = 3);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 
 #include "report.hpp"
@@ -22,6 +23,8 @@ SensitivityOptions sensitivity_options(bool quick);
 /// Whether a setting that the paper does not state gives its convergence: spheres find 0.50, 0.82 and 0.91
 /// times as many collisions as boxes with 3, 6 and 9 objects. Sweeps the size of the scene, the speed, the
 /// stiffness and the size of the forces, level-allowed and the leaves of the octrees, one at a time.
-Report run_sensitivity(const SensitivityOptions& options, bool show_progress);
+/// With `resume`, a complete table in the folder is judged again and nothing runs.
+Report run_sensitivity(const SensitivityOptions& options, const std::filesystem::path& folder, bool resume,
+                       bool show_progress);
 
 }  // namespace supple::experiments

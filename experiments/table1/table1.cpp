@@ -74,18 +74,11 @@ Table means_table(const std::vector<Runs>& all, RunClock clock) {
   return table;
 }
 
-/// The comments at the head of a file: its runs may be of an earlier program, which --resume completes.
-std::string head_of(const fs::path& path) {
-  const std::string text = cli::read_text(path);
-  std::size_t end = 0;
-  while (end < text.size() && text[end] == '#') end = text.find('\n', end) + 1;
-  return text.substr(0, end);
-}
-
 Section section_of(const std::string& heading, const std::string& paragraph, const std::vector<Runs>& all,
                    std::uint64_t first_seed, RunClock clock, const fs::path& folder) {
   Table runs = runs_table(all, first_seed, clock);
-  runs.head = head_of(folder / (runs.name + ".csv"));
+  runs.head =
+      head_of(cli::read_text(folder / (runs.name + ".csv")));  // --resume may complete an earlier program
   return {heading, {paragraph}, {means_table(all, clock), std::move(runs)}};
 }
 
