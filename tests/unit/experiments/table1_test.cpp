@@ -63,9 +63,9 @@ TEST(Table1Runs, AllVariantsSeeTheSameMotion) {
                                       {modern, BoundingVolume::kdop18}};
   const Table1Scene scene = mixed_scene(9, 4);
   const std::vector<RunCounts> together =
-      run_scene(scene, variants, 3, 1, [](const RunCounts& so_far) { return so_far.steps < 300; });
+      run_scene(scene, variants, 3, 1, [](const RunCounts& so_far) { return so_far.steps < 100; });
   for (std::size_t i = 0; i < variants.size(); ++i) {
-    const RunCounts alone = run_steps(scene, variants[i].method, variants[i].volume, 1, 300);
+    const RunCounts alone = run_steps(scene, variants[i].method, variants[i].volume, 1, 100);
     EXPECT_GT(alone.broad, 0u);
     EXPECT_EQ(together[i].broad, alone.broad);
     EXPECT_EQ(together[i].narrow, alone.narrow);
@@ -81,11 +81,11 @@ TEST(Table1Runs, EachVariantEndsByItself) {
   for (const bool first_ends : {true, false}) {
     std::size_t asked = 0;
     const std::vector<RunCounts> counts = run_scene(scene, variants, 3, 1, [&](const RunCounts& so_far) {
-      const bool is_first = so_far.steps > 100 ? !first_ends : asked++ % 2 == 0;
-      return so_far.steps < (is_first == first_ends ? 100u : 300u);
+      const bool is_first = so_far.steps > 30 ? !first_ends : asked++ % 2 == 0;
+      return so_far.steps < (is_first == first_ends ? 30u : 90u);
     });
-    EXPECT_EQ(counts[0].steps, first_ends ? 100u : 300u);
-    EXPECT_EQ(counts[1].steps, first_ends ? 300u : 100u);
+    EXPECT_EQ(counts[0].steps, first_ends ? 30u : 90u);
+    EXPECT_EQ(counts[1].steps, first_ends ? 90u : 30u);
     EXPECT_EQ(counts[0].broad, run_steps(scene, {}, BoundingVolume::aabb, 1, counts[0].steps).broad);
     EXPECT_EQ(counts[1].broad, run_steps(scene, {}, BoundingVolume::sphere, 1, counts[1].steps).broad);
   }
@@ -250,7 +250,7 @@ TEST_F(Table1Folder, ResumeNeedsTheSameOptions) {
 
 TEST_F(Table1Folder, OneRunCountsByAllClocks) {
   options_.scenes = {mixed_scene(9, 4)};
-  options_.simulated_seconds = 6;
+  options_.simulated_seconds = 2;
   options_.runs = 1;
   const auto report = run(false);
   ASSERT_TRUE(report);
@@ -265,7 +265,7 @@ TEST_F(Table1Folder, OneRunCountsByAllClocks) {
     const double broad = std::stod(runs[volume][5]), detection = std::stod(runs[volume][9]),
                  motion = std::stod(runs[volume][10]);
     ASSERT_GT(broad, 0);
-    EXPECT_DOUBLE_EQ(number(4), 100 * broad);
+    EXPECT_DOUBLE_EQ(number(4), 300 * broad);
     EXPECT_DOUBLE_EQ(number(6), 600 * broad / detection);
     EXPECT_DOUBLE_EQ(number(8), 600 * broad / (detection + motion));
     EXPECT_DOUBLE_EQ(number(10), volume == 0 ? 83.2 : 76) << "the paper's mean";
