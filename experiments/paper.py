@@ -3,10 +3,10 @@
 
 usage: paper.py [--quick] [--program PROGRAM] [--output FOLDER]
 
-Runs `supple experiment NAME --output FOLDER/NAME` for each experiment whose report FOLDER/NAME does not have; an
-interrupted table1 goes on. Then writes FOLDER/paper.html, which needs no other file, and figures 3 and 5 as videos,
-FOLDER/figure3.webp and FOLDER/figure5.webp. --quick runs the quick versions. Needs matplotlib, which Debian has as
-python3-matplotlib.
+Runs `supple experiment NAME --output FOLDER/NAME` for each experiment that has no report there yet; an
+interrupted table1 goes on. Then writes FOLDER/paper.html, which needs no other file, and figures 3 and 5 as
+videos, FOLDER/figure3.webp and FOLDER/figure5.webp. --quick runs the quick versions. Needs matplotlib, which
+Debian has as python3-matplotlib.
 """
 
 import argparse

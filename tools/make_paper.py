@@ -6,7 +6,7 @@ usage: make_paper.py [--check]
 With --check it writes nothing and fails when a page is out of date, so each number on these pages is that of a
 committed table. The templates are Jinja2; they have these functions:
 
-  verdict(ID, EXPECTED)        the verdict on a claim with its number; fails if it is not EXPECTED, when that is given
+  verdict(ID, EXPECTED)        the verdict on a claim with its number; fails if EXPECTED is given and differs
   number(ID)                   only the number and its interval
   reason(ID)                   what was measured
   rows(FILE)                   all rows, whose numbers range_of(row, COLUMN) and short(text) write

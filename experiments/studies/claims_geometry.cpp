@@ -51,11 +51,12 @@ Finding leaves_of_levels(const ClaimsOptions&) {
   Finding finding{{"levels", "5",
                    "“level-allowed = 2 when there are 64 leaves, 4 when there are 512 leaves, and so on”."},
                   {"claims_levels", "Leaves of a full octree", {{"level", "Level"}, {"leaves", "Leaves"}}}};
-  for (std::uint64_t level = 0, leaves = 1; level <= 4; ++level, leaves *= 8)
-    finding.table.add({level, leaves});
-  finding.claim.verdict = Verdict::does_not_hold;
-  finding.claim.number = Estimate{512, NAN};
-  finding.claim.quantity = "leaves of a full octree of level 3";
+  std::uint64_t leaves = 1, level = 0;
+  for (; level < 4; ++level, leaves *= 8) finding.table.add({level, leaves});
+  finding.table.add({level, leaves});
+  finding.claim.verdict = verdict_of(leaves == 512);
+  finding.claim.number = Estimate{static_cast<double>(leaves), NAN};
+  finding.claim.quantity = "leaves of a full octree of level 4";
   finding.claim.reason =
       "Level 2 has 8² = 64 leaves; 512 = 8³ leaves are those of level 3, and level 4 has 4,096.";
   return finding;

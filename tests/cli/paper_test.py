@@ -1,5 +1,5 @@
-"""Runs every command in docs/paper.md. Each row has a command, or says that the part is not built. The numbers on the
-pages are those of committed tables."""
+"""Runs every command in docs/paper.md. Each row has a command, or says that the part is not built. The numbers
+on the pages are those of committed tables."""
 
 import importlib.util
 import json
