@@ -17,6 +17,26 @@ double growth(double half_separation) {
   return half_separation > 0 ? half_separation * (1 + 0x1p-19) + std::numeric_limits<float>::min() : 0;
 }
 
+BoundingSphere grown(const BoundingSphere& sphere, double by) {
+  if (by == 0 || sphere.empty()) return sphere;
+  return {sphere.center, round_up(sphere.radius + by)};
+}
+
+/// The part of an object in the distance at which elements of two objects are of interest.
+double half_separation_of(const ObjectOptions& object, const VertexWays* ways, const Question& question) {
+  const double separation = question.impact.impact.min_separation / 2 + object.min_separation;
+  if (!question.safe_step) return separation;
+  return separation + kept_share(*question.safe_step) * ways->longest +
+         safe_step_rounding * ways->largest_coordinate;
+}
+
+}  // namespace
+
+double growth_of(const ObjectOptions& object, const VertexWays* ways, const Question& question) {
+  return std::max(question.is_continuous() ? growth(half_separation_of(object, ways, question)) : 0,
+                  question.has_proximity() ? growth(object.margin) : 0);
+}
+
 Aabb grown(const Aabb& box, double by) {
   if (by == 0 || box.empty()) return box;
   Aabb result;
@@ -26,26 +46,6 @@ Aabb grown(const Aabb& box, double by) {
   }
   return result;
 }
-
-BoundingSphere grown(const BoundingSphere& sphere, double by) {
-  if (by == 0 || sphere.empty()) return sphere;
-  return {sphere.center, round_up(sphere.radius + by)};
-}
-
-/// The part of an object in the distance at which elements of two objects are of interest.
-double half_separation_of(const WorldObject& object, const VertexWays* ways, const Question& question) {
-  const double separation = question.impact.impact.min_separation / 2 + object.options.min_separation;
-  if (!question.safe_step) return separation;
-  return separation + kept_share(*question.safe_step) * ways->longest +
-         safe_step_rounding * ways->largest_coordinate;
-}
-
-double growth_of(const WorldObject& object, const VertexWays* ways, const Question& question) {
-  return std::max(question.is_continuous() ? growth(half_separation_of(object, ways, question)) : 0,
-                  question.has_proximity() ? growth(object.options.margin) : 0);
-}
-
-}  // namespace
 
 ObjectPairs::ObjectPairs(const World& world)
     : world_(world),
@@ -66,7 +66,7 @@ void ObjectPairs::list_volumes(const Question& question, std::span<const VertexW
   for (std::uint32_t slot = 0; slot < slots; ++slot) {
     const WorldObject* const object = world_.at(slot);
     const double growth =
-        object != nullptr ? growth_of(*object, ways.empty() ? nullptr : &ways[slot], question) : 0;
+        object != nullptr ? growth_of(object->options, ways.empty() ? nullptr : &ways[slot], question) : 0;
     if (versions_[slot] != versions[slot]) changed_[slot] = 1;
     versions_[slot] = versions[slot];
     if (changed_[slot] == 0 && !is_another_search && growths_[slot] == growth) continue;

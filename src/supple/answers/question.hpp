@@ -64,4 +64,7 @@ struct Question {
   }
 };
 
+/// What a request asks of a scene with these options. Throws `Error` when the request is out of range.
+Question question_of(const DetectRequest& request, const SceneOptions& options);
+
 }  // namespace supple

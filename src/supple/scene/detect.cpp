@@ -7,15 +7,6 @@
 #include "verify/verify.hpp"
 
 namespace supple {
-namespace {
-
-void check_manifolds(const Question& question) {
-  if (question.has_penetration() || question.has_proximity()) return;
-  fail("detect: manifolds are made from penetration or proximity; request one of these contacts");
-}
-
-}  // namespace
-
 Scene::Implementation::Implementation(const SceneOptions& options) : world(options) {}
 
 ImpactSearchOptions Scene::Implementation::impact_options() const {
@@ -24,28 +15,13 @@ ImpactSearchOptions Scene::Implementation::impact_options() const {
 }
 
 Question Scene::Implementation::question_of(const DetectRequest& request) const {
-  if (request.impact) check(*request.impact, "DetectRequest::impact");
-  const SceneOptions& options = world.options;
-  Question question{
-      .contacts = with_included(request.contacts.value_or(options.contacts)),
-      .impact = {request.impact.value_or(options.impact),
-                 request.element_kinds.value_or(options.element_kinds),
-                 request.continuous_listing.value_or(options.continuous_listing), options.max_exact_bits},
-      .proximity_listing = request.proximity_listing.value_or(options.proximity_listing),
-      .contact_points = options.contact_points,
-      .colliding_vertices = options.comparison.colliding_vertices,
-      .lazy_refit = options.comparison.lazy_refit,
-      .manifolds = request.manifolds.value_or(options.manifolds),
-      .depths = request.depths.value_or(options.depths)};
-  if (request.manifolds.value_or(false)) check_manifolds(question);
-  if (question.has_penetration()) check_penetration(request);
+  const Question question = supple::question_of(request, world.options);
+  if (question.has_penetration()) check_vertex_groups();
   return question;
 }
 
 /// Penetrations and curves need all intersections.
-void Scene::Implementation::check_penetration(const DetectRequest& request) const {
-  if (request.max_contacts != DetectRequest{}.max_contacts)
-    fail("detect: penetration needs all intersections; request it without max_contacts");
+void Scene::Implementation::check_vertex_groups() const {
   for (std::uint32_t slot = 0; slot < world.slot_count(); ++slot) {
     const WorldObject* const object = world.at(slot);
     if (object == nullptr || object->vertex_groups().empty()) continue;

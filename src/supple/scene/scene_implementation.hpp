@@ -41,7 +41,7 @@ class Scene::Implementation {
  private:
   /// Throws an error when the request is out of range.
   Question question_of(const DetectRequest& request) const;
-  void check_penetration(const DetectRequest& request) const;
+  void check_vertex_groups() const;
 
   Events events_;
   std::optional<Detection> search_;  // of `search`

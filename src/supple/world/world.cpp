@@ -66,6 +66,19 @@ void World::remove(ObjectId id) {
   mark_changed();
 }
 
+void World::arrange(std::span<const std::uint32_t> slots) {
+  std::vector<Slot> arranged;
+  arranged.reserve(slots_.size());
+  for (const std::uint32_t slot : slots) arranged.push_back(std::move(slots_[slot]));
+  arranged.resize(slots_.size());
+  slots_ = std::move(arranged);
+  free_slots_.clear();
+  for (auto slot = static_cast<std::uint32_t>(slots_.size()); slot > slots.size();) free_slots_.push_back(--slot);
+  versions_.resize(slots_.size(), 0);
+  for (std::uint64_t& version : versions_) version = ++last_version_;
+  mark_changed();
+}
+
 bool World::contains(ObjectId id) const {
   return id.index < slots_.size() && slots_[id.index].object != nullptr &&
          slots_[id.index].generation == id.generation;

@@ -39,6 +39,10 @@ class World {
   /// When memory runs out, it throws before it changes anything.
   void remove(ObjectId id);
 
+  /// Gives the objects of these slots, which are all objects, the slots 0, 1 and so on. Ids change, and
+  /// searches take all objects as moved.
+  void arrange(std::span<const std::uint32_t> slots);
+
   bool contains(ObjectId id) const;
   std::vector<ObjectId> objects() const;
   WorldObject& object(ObjectId id, const char* call) const;

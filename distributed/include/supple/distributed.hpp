@@ -1,0 +1,123 @@
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "supple/options.hpp"
+#include "supple/result.hpp"
+#include "supple/safe_step.hpp"
+#include "supple/types.hpp"
+#include "supple/views.hpp"
+
+namespace supple {
+
+/// On which rank the contacts of a step are.
+enum class ResultPlacement : std::uint8_t {
+  gathered,  ///< all on rank 0: the lists of `Scene::detect`
+  /// On the rank that added object a; of an object in parts, on the lowest rank that has one of them.
+  owner,
+  /// Spread evenly: by a hash of both objects and of element a; with penetration, of both objects.
+  balanced,
+};
+
+/// Options of a distributed scene, fixed at its construction and the same on all ranks.
+struct DistributedOptions {
+  /// `threads` are those of each rank; 0 means the cores of the machine divided by its ranks. The bounding
+  /// volume is the box. Options that exist for comparison are errors where they need whole octrees.
+  SceneOptions scene{};
+  ResultPlacement results = ResultPlacement::gathered;
+  /// Objects are cut into clusters of at most this many triangles, which are sent where they may touch others.
+  std::uint32_t cluster_triangles = 2048;
+  /// Space is divided anew when the work of the busiest rank exceeds the mean by this factor, and by a tenth
+  /// more than after the last division. At least 1.
+  double max_imbalance = 1.25;
+};
+
+/// The vertices and triangles of a part of an object, as the numbers that they have in the whole object, each
+/// list ascending. Parts share the vertices on their borders; each triangle is in one part.
+struct ObjectPart {
+  std::span<const std::uint32_t> vertices, triangles;
+};
+
+/// What one rank did in the last collective call.
+struct DistributedStats {
+  std::uint64_t bytes_sent = 0, messages_sent = 0;  ///< to other ranks
+  std::uint64_t clusters = 0;                       ///< of the parts that this rank added
+  std::uint64_t cluster_pairs = 0;                  ///< that this rank tests
+  std::uint64_t triangles = 0;                      ///< that this rank needs for its pairs
+  double imbalance = 1;                             ///< work of the busiest rank by the mean
+  bool divided = false;                             ///< space was divided anew
+};
+
+/// One scene over all ranks of a communicator: the contacts of `Scene::detect`, to the byte, for objects that
+/// are on different ranks or in parts on several ones.
+///
+/// ```cpp
+/// supple::DistributedScene scene(MPI_COMM_WORLD);
+/// scene.add(supple::ObjectId{id}, positions, triangles);  // each rank its own objects
+/// for (;;) {
+///   scene.set_positions(supple::ObjectId{id}, positions);
+///   for (const supple::Contact& c : scene.detect().contacts) respond(c);  // on rank 0
+/// }
+/// ```
+///
+/// The user gives the ids, which are those of the results. Results equal those of one `Scene` whose objects
+/// have these ids. An id must not return after its object was removed: a new object takes a higher
+/// `ObjectId::generation`.
+///
+/// `add`, `add_part`, `remove`, `set_positions` and `set_motion` are calls of one rank. The others are
+/// collective: all ranks make them in the same order with the same arguments. An error on one rank, such as
+/// bad input or no memory, becomes the same `Error` on all of them, which names the rank.
+///
+/// Method: clusters of neighbouring triangles are sent as boxes. Recursive coordinate bisection gives each
+/// rank a region of space. Two clusters whose boxes overlap are tested by the rank whose region contains the
+/// lower corner of their intersection; it gets their vertices, the topology only once. Penetration needs whole
+/// objects: the rank that tests two objects gets both.
+///
+/// Memory of a rank: the positions and triangles that it added, and octrees of the clusters that it needs.
+class DistributedScene {
+ public:
+  /// Collective. Throws `Error` when an option is out of its range.
+  explicit DistributedScene(MPI_Comm communicator, const DistributedOptions& options = {});
+  ~DistributedScene();
+  DistributedScene(DistributedScene&&) noexcept;
+  DistributedScene& operator=(DistributedScene&&) noexcept;
+
+  /// Adds an object whose triangles are all on this rank. Throws `Error` as `Scene::add` does, when this rank
+  /// has the id, and when the options have `weld` or `same_vertex`: weld the mesh first.
+  void add(ObjectId id, PositionsView positions, TrianglesView triangles, const ObjectOptions& options = {});
+  /// Adds a part of an object. `triangles` have the numbers of the part's vertices: 0 is the first of
+  /// `part.vertices`. All ranks give the same options. Throws `Error` as `add` does.
+  void add_part(ObjectId id, PositionsView positions, TrianglesView triangles, const ObjectPart& part,
+                const ObjectOptions& options = {});
+  /// Removes the object, or the part of it that this rank has.
+  void remove(ObjectId id);
+  /// The positions of the vertices that this rank added, in its order. Copies them, O(n).
+  void set_positions(ObjectId id, PositionsView positions);
+  /// As `Scene::set_motion`.
+  void set_motion(ObjectId id, PositionsView from, PositionsView to);
+
+  /// Finds the contacts as `Scene::detect` does. The result is valid until the next call. Counts of its
+  /// statistics are sums over all ranks, its times those of the slowest rank. Requests with `max_contacts`,
+  /// manifolds or first contacts of elements are errors.
+  const DetectResult& detect(const DetectRequest& request = {});
+  /// As `Scene::earliest_impact`; the same on all ranks.
+  std::optional<ContinuousContact> earliest_impact();
+  /// As `Scene::max_step`; the same on all ranks.
+  SafeStep max_step();
+
+  int rank() const;
+  int rank_count() const;
+  /// Of this rank.
+  const DistributedStats& stats() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace supple

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace supple {
+
+template <class Value>
+concept Plain = std::is_trivially_copyable_v<Value>;
+
+/// Appends values to a message.
+class Writer {
+ public:
+  explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+
+  template <Plain Value>
+  void put(const Value& value) {
+    append(&value, sizeof value);
+  }
+  /// The number of values, then the values.
+  template <Plain Value>
+  void put_all(std::span<const Value> values) {
+    put<std::uint64_t>(values.size());
+    append(values.data(), values.size_bytes());
+  }
+  template <Plain Value>
+  void put_all(const std::vector<Value>& values) {
+    put_all(std::span<const Value>(values));
+  }
+  void put_all(const std::string& text) { put_all(std::span<const char>(text)); }
+  std::size_t size() const { return bytes_.size(); }
+
+ private:
+  void append(const void* data, std::size_t size) {
+    const auto* const first = static_cast<const std::byte*>(data);
+    bytes_.insert(bytes_.end(), first, first + size);
+  }
+
+  std::vector<std::byte>& bytes_;
+};
+
+/// Takes values from a message in the order of `Writer`.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+  bool is_done() const { return rest_.empty(); }
+  template <Plain Value>
+  Value get() {
+    Value value;
+    take(&value, sizeof value);
+    return value;
+  }
+  template <Plain Value>
+  void append_all(std::vector<Value>& values) {
+    const std::size_t first = values.size(), count = static_cast<std::size_t>(get<std::uint64_t>());
+    values.resize(first + count);
+    take(values.data() + first, count * sizeof(Value));
+  }
+  template <Plain Value>
+  std::vector<Value> get_all() {
+    std::vector<Value> values;
+    append_all(values);
+    return values;
+  }
+
+ private:
+  void take(void* to, std::size_t size) {
+    if (size != 0) std::memcpy(to, rest_.data(), size);
+    rest_ = rest_.subspan(size);
+  }
+
+  std::span<const std::byte> rest_;
+};
+
+}  // namespace supple

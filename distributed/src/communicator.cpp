@@ -1,0 +1,106 @@
+#include "communicator.hpp"
+
+#include <zoltan_comm.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/error.hpp"
+
+namespace supple {
+namespace {
+
+constexpr int tag_of_plan = 4211, tag_of_sizes = 4212, tag_of_data = 4213;
+/// Sizes of messages are counted in words, so that they fit into an int up to 16 GiB.
+constexpr std::size_t word = 8;
+
+}  // namespace
+
+Communicator::Communicator(MPI_Comm communicator) {
+  int is_initialized = 0;
+  MPI_Initialized(&is_initialized);
+  if (is_initialized == 0) fail("DistributedScene: MPI is not initialized; call MPI_Init first");
+  MPI_Comm_dup(communicator, &handle_);
+  MPI_Comm_rank(handle_, &rank_);
+  MPI_Comm_size(handle_, &size_);
+}
+
+Communicator::~Communicator() {
+  int is_finalized = 0;
+  MPI_Finalized(&is_finalized);
+  if (is_finalized == 0) MPI_Comm_free(&handle_);
+}
+
+int Communicator::ranks_of_machine() const {
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(handle_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
+  int count = 1;
+  MPI_Comm_size(machine, &count);
+  MPI_Comm_free(&machine);
+  return count;
+}
+
+double Communicator::sum(double value) const {
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, handle_);
+  return value;
+}
+
+double Communicator::largest(double value) const {
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, handle_);
+  return value;
+}
+
+void Communicator::agree(bool failed, const std::string& error) const {
+  int first = failed ? rank_ : size_;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, handle_);
+  if (first == size_) return;
+  std::string message = first == rank_ ? error : std::string();
+  auto length = static_cast<int>(message.size());
+  MPI_Bcast(&length, 1, MPI_INT, first, handle_);
+  message.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(message.data(), length, MPI_CHAR, first, handle_);
+  fail("rank " + std::to_string(first) + ": " + message);
+}
+
+void Communicator::exchange(const Outbox& outbox, Inbox& inbox) {
+  ranks_.clear();
+  sizes_.clear();
+  sent_.clear();
+  // Each message starts with its sender and its size in bytes, and is filled up to whole words.
+  for (const auto& [rank, bytes] : outbox.messages()) {
+    if (bytes.empty()) continue;
+    const std::uint64_t head[] = {static_cast<std::uint64_t>(rank_), bytes.size()};
+    const std::size_t first = sent_.size();
+    const std::size_t words = sizeof head / word + (bytes.size() + word - 1) / word;
+    sent_.resize(first + words * word);
+    std::memcpy(sent_.data() + first, head, sizeof head);
+    std::memcpy(sent_.data() + first + sizeof head, bytes.data(), bytes.size());
+    ranks_.push_back(rank);
+    sizes_.push_back(static_cast<int>(words));
+    if (rank == rank_) continue;
+    ++messages_sent;
+    bytes_sent += words * word;
+  }
+  ZOLTAN_COMM_OBJ* plan = nullptr;
+  int incoming = 0, incoming_words = 0;
+  bool is_ok = Zoltan_Comm_Create(&plan, static_cast<int>(ranks_.size()), ranks_.data(), handle_, tag_of_plan,
+                                  &incoming) == 0;
+  is_ok = is_ok && Zoltan_Comm_Resize(plan, sizes_.data(), tag_of_sizes, &incoming_words) == 0;
+  inbox.bytes_.resize(static_cast<std::size_t>(incoming_words) * word);
+  is_ok = is_ok && Zoltan_Comm_Do(plan, tag_of_data, sent_.data(), static_cast<int>(word),
+                                  reinterpret_cast<char*>(inbox.bytes_.data())) == 0;
+  Zoltan_Comm_Destroy(&plan);
+  if (!is_ok) fail("the exchange of messages between ranks failed; Zoltan or MPI ran out of memory");
+  inbox.messages_.clear();
+  for (std::size_t first = 0; first < inbox.bytes_.size();) {
+    std::uint64_t head[2];
+    std::memcpy(head, inbox.bytes_.data() + first, sizeof head);
+    const auto size = static_cast<std::size_t>(head[1]);
+    inbox.messages_.push_back({static_cast<int>(head[0]), first + sizeof head, size});
+    first += sizeof head + (size + word - 1) / word * word;
+  }
+  std::sort(inbox.messages_.begin(), inbox.messages_.end(),
+            [](const auto& p, const auto& q) { return p.from < q.from; });
+}
+
+}  // namespace supple

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bytes.hpp"
+
+namespace supple {
+
+/// Messages to other ranks, or to this one.
+class Outbox {
+ public:
+  Writer to(int rank) { return Writer(messages_[rank]); }
+  void clear() {
+    for (auto& [rank, bytes] : messages_) bytes.clear();
+  }
+  const std::map<int, std::vector<std::byte>>& messages() const { return messages_; }
+
+ private:
+  std::map<int, std::vector<std::byte>> messages_;
+};
+
+/// The messages of one exchange, ascending by sender.
+class Inbox {
+ public:
+  /// Calls `read(reader, rank)` for each message.
+  template <class Read>
+  void for_each(const Read& read) const {
+    for (const Message& message : messages_) {
+      Reader reader(std::span<const std::byte>(bytes_).subspan(message.first, message.size));
+      read(reader, message.from);
+    }
+  }
+
+ private:
+  friend class Communicator;
+  struct Message {
+    int from = 0;
+    std::size_t first = 0, size = 0;
+  };
+  std::vector<std::byte> bytes_;
+  std::vector<Message> messages_;
+};
+
+/// The ranks of a scene, on a communicator of their own.
+class Communicator {
+ public:
+  explicit Communicator(MPI_Comm communicator);
+  ~Communicator();
+  Communicator(const Communicator&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+
+  MPI_Comm handle() const { return handle_; }
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+  /// How many ranks run on this machine.
+  int ranks_of_machine() const;
+
+  /// Collective: runs `work` on each rank. When it throws on any of them, all throw the error of the lowest.
+  template <class Work>
+  void together(const Work& work) {
+    std::string error;
+    bool failed = false;
+    try {
+      work();
+    } catch (const std::exception& e) {
+      failed = true;
+      error = e.what();
+    }
+    agree(failed, error);
+  }
+  /// Collective: each rank sends its messages and gets those to it. Only ranks with a message for each other
+  /// communicate.
+  void exchange(const Outbox& outbox, Inbox& inbox);
+  double sum(double value) const;
+  double largest(double value) const;
+  bool any(bool value) const { return largest(value ? 1 : 0) != 0; }
+
+  std::uint64_t bytes_sent = 0, messages_sent = 0;  ///< to other ranks
+
+ private:
+  void agree(bool failed, const std::string& error) const;
+
+  MPI_Comm handle_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+  // Scratch memory.
+  std::vector<int> ranks_, sizes_, senders_, received_sizes_;
+  std::vector<char> sent_;
+};
+
+}  // namespace supple

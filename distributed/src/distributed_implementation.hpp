@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "answers/detection.hpp"
+#include "answers/impact/step_search.hpp"
+#include "communicator.hpp"
+#include "found_lists.hpp"
+#include "home_object.hpp"
+#include "local_world.hpp"
+#include "regions.hpp"
+#include "scene/pair_cache.hpp"
+#include "supple/broad_phase.hpp"
+#include "supple/distributed.hpp"
+
+namespace supple {
+
+/// The cluster of a `ClusterName` that stands for all clusters of its object.
+constexpr std::uint32_t all_clusters = ~std::uint32_t{0};
+
+/// A cluster or an object, as the ranks whose regions it meets get it.
+struct Unit {
+  ClusterName name;  ///< `all_clusters` for an object
+  Aabb box;
+  std::uint32_t triangles = 0;
+  std::uint32_t group = 1, mask = ~std::uint32_t{0};
+  bool is_static = false, self_collision = false;
+
+  bool may_pair(const Unit& other) const {
+    if (name.object == other.name.object) return self_collision;
+    return !(is_static && other.is_static) && (group & other.mask) != 0 && (other.group & mask) != 0;
+  }
+};
+
+/// A step is a row of exchanges: the boxes of clusters and objects go to the ranks whose regions they meet;
+/// these ask for the clusters of their pairs, and get them; what they find goes to where the results are.
+class DistributedScene::Implementation {
+ public:
+  Implementation(MPI_Comm communicator, const DistributedOptions& distributed_options);
+
+  void add(ObjectId id, const PositionsView& positions, const TrianglesView& triangles,
+           const ObjectPart* part, const ObjectOptions& object_options);
+  void remove(ObjectId id);
+  HomeObject& home(ObjectId id, const char* call);
+  const DetectResult& detect(const DetectRequest& request);
+  std::optional<ContinuousContact> earliest_impact();
+
+  Communicator ranks;
+  const DistributedOptions options;
+  DistributedStats stats;
+
+ private:
+  World& world() { return local_.world(); }
+  void prepare(const Question& question);
+  void agree_on_objects();
+  void divide_space();
+  void send_units(const Question& question);
+  void send_unit(const Unit& unit, const std::vector<int>& homes);
+  bool is_tested(ObjectId a, ObjectId b) const;
+  void read_units();
+  void find_object_pairs();
+  void find_cluster_pairs();
+  void request_clusters();
+  void answer_requests();
+  void take_clusters();
+
+  ObjectId user(ObjectId local) const { return local_.user_object(local.index); }
+  int rank_of_pair(ObjectId a, ObjectId b) const;
+  int rank_of_record(ObjectId a, ObjectId b, std::uint32_t element) const;
+  Contact named(Contact contact) const;
+  ContinuousContact named(ContinuousContact contact) const;
+  ProximityPair named(ProximityPair pair) const;
+  std::array<std::uint32_t, 2> named(ObjectId object, FeatureKind kind,
+                                     const std::array<std::uint32_t, 2>& element) const;
+  std::vector<std::uint32_t> user_vertices(ObjectId object, std::span<const std::uint32_t> vertices) const;
+  void send_results(const Question& question);
+  void send_penetrations(const DetectResult& found);
+  void gather_stats();
+
+  std::map<ObjectId, HomeObject> homes_;
+  std::uint32_t additions_ = 0;
+  bool has_changed_ = true;  // objects were added or removed on this rank
+  bool has_parts_ = false;   // on any rank
+  Regions regions_;
+  double most_imbalance_ = 1;  // until space is divided anew
+  LocalWorld local_;
+  Detection detection_;
+  StepSearch step_search_;
+  Outbox outbox_;
+  Inbox inbox_;
+  // Of a step.
+  bool by_objects_ = false;  // whole objects are tested
+  std::vector<Unit> objects_, clusters_;
+  std::map<ObjectId, std::vector<int>> homes_of_;       // of `objects_`
+  std::vector<ObjectPair> object_pairs_, tested_;       // of this rank; `tested_` also of an object with itself
+  std::map<ObjectId, int> owners_;                      // the first homes of objects with clusters here
+  std::map<ClusterName, double> needed_;                // with their work
+  BroadPhase object_phase_{{.threads = 1}}, cluster_phase_{{.threads = 1}};
+  FoundLists lists_;
+  std::array<PairCache, pair_lists> events_;  // by `PairList`
+  DetectResult result_;
+  std::uint64_t step_ = 0;
+};
+
+}  // namespace supple

@@ -1,0 +1,200 @@
+#include "supple/distributed.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/error.hpp"
+#include "distributed_implementation.hpp"
+#include "supple/result_descriptions.hpp"
+#include "supple/topology.hpp"
+
+namespace supple {
+namespace {
+
+SceneOptions checked(SceneOptions options, const Communicator& communicator) {
+  const auto refuse = [](const char* what) {
+    fail(std::string("DistributedScene: ") + what + "; use a Scene for comparisons");
+  };
+  if (options.bounding_volume != BoundingVolume::aabb) refuse("the bounding volume is the box");
+  if (options.comparison.colliding_vertices) refuse("colliding vertices need whole octrees");
+  if (options.comparison.lazy_refit) refuse("lazy refit needs whole octrees");
+  if (options.threads == 0)
+    options.threads = std::max(1u, Parallel(0).worker_count() /
+                                       static_cast<std::uint32_t>(communicator.ranks_of_machine()));
+  return options;
+}
+
+}  // namespace
+
+DistributedScene::Implementation::Implementation(MPI_Comm communicator,
+                                                 const DistributedOptions& distributed_options)
+    : ranks(communicator), options(distributed_options), regions_(ranks),
+      local_(checked(options.scene, ranks)), detection_(local_.world()), step_search_(local_.world()) {
+  if (options.cluster_triangles == 0) fail("DistributedOptions: cluster_triangles is 0; it must be positive");
+  if (!(options.max_imbalance >= 1))
+    fail("DistributedOptions: max_imbalance is " + std::to_string(options.max_imbalance) +
+         "; it must be at least 1");
+}
+
+void DistributedScene::Implementation::add(ObjectId id, const PositionsView& positions,
+                                           const TrianglesView& triangles, const ObjectPart* part,
+                                           const ObjectOptions& object_options) {
+  if (homes_.contains(id))
+    fail("add: object " + std::to_string(id.index) + " (generation " + std::to_string(id.generation) +
+         ") is on this rank already; remove it first, and take a higher generation");
+  HomeObject object(id, positions, triangles, part, object_options, options.cluster_triangles, additions_++);
+  if (object.options.solid && part == nullptr) {
+    TriangleMesh surface;
+    for (std::size_t v = 0; v < positions.size(); ++v) surface.positions.push_back(positions[v]);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const auto corners = triangles[t];
+      surface.triangles.push_back({static_cast<std::uint32_t>(corners[0]),
+                                   static_cast<std::uint32_t>(corners[1]),
+                                   static_cast<std::uint32_t>(corners[2])});
+    }
+    if (const std::string fault = fault_of_solid(surface); !fault.empty())
+      fail(object.options.name + " is no solid: " + fault);
+  }
+  homes_.emplace(id, std::move(object));
+  has_changed_ = true;
+}
+
+void DistributedScene::Implementation::remove(ObjectId id) {
+  home(id, "remove");
+  homes_.erase(id);
+  has_changed_ = true;
+}
+
+HomeObject& DistributedScene::Implementation::home(ObjectId id, const char* call) {
+  const auto found = homes_.find(id);
+  if (found == homes_.end())
+    fail(std::string(call) + ": object " + std::to_string(id.index) + " (generation " +
+         std::to_string(id.generation) + ") is not on this rank; call this on the rank that added it");
+  return found->second;
+}
+
+/// Sums the counts of all ranks; times are those of the slowest one.
+void DistributedScene::Implementation::gather_stats() {
+  for_each_field<StepStats>([&](const auto& field) {
+    auto& value = result_.stats.*field.member;
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::same_as<Value, double>) {
+      value = ranks.largest(value);
+    } else if constexpr (std::same_as<Value, std::uint64_t>) {
+      value = static_cast<std::uint64_t>(ranks.sum(static_cast<double>(value)));
+    }
+  });
+  double work = 0;
+  for (const auto& [name, of_cluster] : needed_) work += of_cluster;
+  const double mean = ranks.sum(work) / ranks.size(), most = ranks.largest(work);
+  stats.imbalance = mean > 0 ? most / mean : 1;
+  if (stats.divided) most_imbalance_ = std::max(options.max_imbalance, 1.1 * stats.imbalance);
+  stats.bytes_sent = ranks.bytes_sent;
+  stats.messages_sent = ranks.messages_sent;
+}
+
+const DetectResult& DistributedScene::Implementation::detect(const DetectRequest& request) {
+  Question question;
+  ranks.together([&] {
+    question = question_of(request, options.scene);
+    const auto refuse = [](const char* what) { fail(std::string("DistributedScene::detect: ") + what); };
+    if (request.max_contacts != DetectRequest{}.max_contacts) refuse("max_contacts is not supported");
+    if (question.manifolds) refuse("manifolds are not supported");
+    if (question.is_continuous() && question.impact.listing == ContinuousListing::first)
+      refuse("ContinuousListing::first is not supported");
+  });
+  prepare(question);
+  result_ = {};
+  ranks.together([&] {
+    detection_.run(question, request.max_contacts, {}, result_.stats);
+    send_results(question);
+  });
+  ranks.exchange(outbox_, inbox_);
+  ranks.together([&] {
+    lists_.clear();
+    inbox_.for_each([&](Reader& from, int) { lists_.read(from); });
+    lists_.arrange();
+    lists_.list(result_);
+  });
+  for (std::size_t list = 0; list < pair_lists; ++list) events_[list].update(lists_.pairs[list]);
+  result_.volume_events = events_[0].events();
+  result_.contact_events = events_[1].events();
+  result_.proximity_events = events_[2].events();
+  result_.penetration_events = events_[3].events();
+  result_.step = step_++;
+  gather_stats();
+  return result_;
+}
+
+std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impact() {
+  const SceneOptions& of = options.scene;
+  const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
+  prepare({.contacts = ContactKinds::continuous, .impact = search});
+  std::optional<ContinuousContact> first;
+  ranks.together([&] {
+    first = step_search_.earliest_impact(search);
+    if (first) first = named(*first);
+  });
+  const double earliest = -ranks.largest(first ? -first->toi : -2);
+  outbox_.clear();
+  if (first && first->toi == earliest) outbox_.to(0).put(*first);
+  ranks.exchange(outbox_, inbox_);
+  first.reset();
+  inbox_.for_each([&](Reader& from, int) {
+    const auto other = from.get<ContinuousContact>();
+    if (!first || is_before(other, *first)) first = other;
+  });
+  gather_stats();
+  if (earliest > 1) return std::nullopt;
+  ContinuousContact found = first.value_or(ContinuousContact{});
+  MPI_Bcast(&found, sizeof found, MPI_BYTE, 0, ranks.handle());
+  return found;
+}
+
+DistributedScene::DistributedScene(MPI_Comm communicator, const DistributedOptions& options)
+    : implementation_(std::make_unique<Implementation>(communicator, options)) {}
+DistributedScene::~DistributedScene() = default;
+DistributedScene::DistributedScene(DistributedScene&&) noexcept = default;
+DistributedScene& DistributedScene::operator=(DistributedScene&&) noexcept = default;
+
+void DistributedScene::add(ObjectId id, PositionsView positions, TrianglesView triangles,
+                           const ObjectOptions& options) {
+  implementation_->add(id, positions, triangles, nullptr, options);
+}
+void DistributedScene::add_part(ObjectId id, PositionsView positions, TrianglesView triangles,
+                                const ObjectPart& part, const ObjectOptions& options) {
+  implementation_->add(id, positions, triangles, &part, options);
+}
+void DistributedScene::remove(ObjectId id) {
+  implementation_->remove(id);
+}
+void DistributedScene::set_positions(ObjectId id, PositionsView positions) {
+  implementation_->home(id, "set_positions").set_positions(positions);
+}
+void DistributedScene::set_motion(ObjectId id, PositionsView from, PositionsView to) {
+  implementation_->home(id, "set_motion").set_motion(from, to);
+}
+const DetectResult& DistributedScene::detect(const DetectRequest& request) {
+  return implementation_->detect(request);
+}
+std::optional<ContinuousContact> DistributedScene::earliest_impact() {
+  return implementation_->earliest_impact();
+}
+SafeStep DistributedScene::max_step() {
+  const auto earliest = implementation_->earliest_impact();
+  if (!earliest) return {};
+  return {earliest->toi, LimitingPair{earliest->object_a, earliest->object_b, earliest->kind,
+                                      earliest->element_a, earliest->element_b}};
+}
+int DistributedScene::rank() const {
+  return implementation_->ranks.rank();
+}
+int DistributedScene::rank_count() const {
+  return implementation_->ranks.size();
+}
+const DistributedStats& DistributedScene::stats() const {
+  return implementation_->stats;
+}
+
+}  // namespace supple

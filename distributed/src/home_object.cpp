@@ -1,0 +1,240 @@
+#include "home_object.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "core/error.hpp"
+#include "core/sort_once.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/vector.hpp"
+#include "octree/object_octree.hpp"
+#include "supple/option_descriptions.hpp"
+
+namespace supple {
+namespace {
+
+std::string named(ObjectId id, const ObjectOptions& options) {
+  return options.name.empty() ? "object " + std::to_string(id.index) : options.name;
+}
+
+void check_ascending(std::span<const std::uint32_t> ids, std::size_t count, const std::string& what) {
+  if (ids.size() != count)
+    fail(what + ": " + std::to_string(ids.size()) + " numbers for " + std::to_string(count) +
+         "; give one for each");
+  for (std::size_t i = 1; i < ids.size(); ++i) {
+    if (ids[i - 1] < ids[i]) continue;
+    fail(what + ": number " + std::to_string(i) + " is " + std::to_string(ids[i]) + " after " +
+         std::to_string(ids[i - 1]) + "; give them ascending, each once");
+  }
+}
+
+/// Faces, then edges and points of no triangle as in a world.
+std::vector<Triangle> checked_elements(const TrianglesView& triangles, std::size_t vertex_count,
+                                       const ObjectOptions& options) {
+  std::vector<Triangle> elements;
+  elements.reserve(triangles.size());
+  const auto check_vertex = [&](std::int64_t v, const char* what, std::size_t i) {
+    if (v >= 0 && static_cast<std::size_t>(v) < vertex_count) return;
+    fail(options.name + ": " + what + " " + std::to_string(i) + " uses vertex " + std::to_string(v) +
+         ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
+  };
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const std::array<std::int64_t, 3> ids = triangles[t];
+    for (const std::int64_t v : ids) check_vertex(v, "triangle", t);
+    elements.push_back({static_cast<std::uint32_t>(ids[0]), static_cast<std::uint32_t>(ids[1]),
+                        static_cast<std::uint32_t>(ids[2])});
+  }
+  std::vector<Triangle> others;
+  for (std::size_t i = 0; i < options.edges.size(); ++i) {
+    const auto [v, w] = std::minmax(options.edges[i][0], options.edges[i][1]);
+    check_vertex(w, "edge", i);
+    if (v == w)
+      fail(options.name + ": both ends of edge " + std::to_string(i) + " are vertex " + std::to_string(v) +
+           "; list it in points");
+    others.push_back({v, w, w});
+  }
+  for (std::size_t i = 0; i < options.points.size(); ++i) {
+    check_vertex(options.points[i], "point", i);
+    others.push_back({options.points[i], options.points[i], options.points[i]});
+  }
+  sort_once(others);
+  elements.insert(elements.end(), others.begin(), others.end());
+  return elements;
+}
+
+template <class Scalar>
+void write(const std::vector<Scalar>& xyz, std::span<const std::uint32_t> vertices, Writer& to) {
+  for (const std::uint32_t v : vertices)
+    to.put(std::array<Scalar, 3>{xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]});
+}
+
+}  // namespace
+
+void Coordinates::assign(const PositionsView& positions) {
+  is_double = positions.is_double();
+  doubles.resize(is_double ? 3 * positions.size() : 0);
+  floats.resize(is_double ? 0 : 3 * positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t at = 3 * i + static_cast<std::size_t>(axis);
+      if (is_double) {
+        doubles[at] = positions.get<double>(i)[axis];
+      } else {
+        floats[at] = positions.get<float>(i)[axis];
+      }
+    }
+  }
+}
+
+HomeObject::HomeObject(ObjectId object_id, const PositionsView& positions, const TrianglesView& triangles,
+                       const ObjectPart* part, const ObjectOptions& object_options,
+                       std::uint32_t cluster_triangles, std::uint32_t addition_number)
+    : id(object_id), addition(addition_number), options(object_options), is_part_(part != nullptr), vertex_count_(positions.size()) {
+  options.name = named(id, options);
+  check(options);
+  if (options.weld || !options.same_vertex.empty())
+    fail(options.name + ": a distributed scene does not weld; weld the mesh before it is added");
+  std::span<const std::uint32_t> face_ids;
+  if (part != nullptr) {
+    check_ascending(part->vertices, positions.size(), options.name + ": ObjectPart::vertices");
+    check_ascending(part->triangles, triangles.size(), options.name + ": ObjectPart::triangles");
+    vertex_ids_.assign(part->vertices.begin(), part->vertices.end());
+    face_ids = part->triangles;
+  }
+  const std::vector<Triangle> elements = checked_elements(triangles, positions.size(), options);
+  const auto face_count = static_cast<std::uint32_t>(triangles.size());
+  end_.assign(positions);
+  // Neighbours in space are neighbours in the order of an octree.
+  const ObjectOctree octree(positions, elements, {}, BoundingVolume::aabb, SphereFit{});
+  const std::span<const std::uint32_t> order = octree.triangle_ids();
+  const std::size_t count = (order.size() + cluster_triangles - 1) / cluster_triangles;
+  for (std::size_t c = 0; c < count; ++c) {
+    Cluster& cluster = clusters.emplace_back();
+    const std::size_t first = order.size() * c / count, end = order.size() * (c + 1) / count;
+    std::vector<std::uint32_t> ids(order.begin() + static_cast<std::ptrdiff_t>(first),
+                                   order.begin() + static_cast<std::ptrdiff_t>(end));
+    std::sort(ids.begin(), ids.end());
+    for (const std::uint32_t e : ids)
+      cluster.vertices.insert(cluster.vertices.end(), elements[e].begin(), elements[e].end());
+    sort_once(cluster.vertices);
+    for (const std::uint32_t e : ids) {
+      Triangle corners = elements[e];
+      for (std::uint32_t& corner : corners) {
+        corner = static_cast<std::uint32_t>(
+            std::lower_bound(cluster.vertices.begin(), cluster.vertices.end(), corner) -
+            cluster.vertices.begin());
+      }
+      cluster.elements.push_back(corners);
+      if (e < face_count) cluster.faces.push_back(face_ids.empty() ? e : face_ids[e]);
+    }
+    cluster.work = static_cast<double>(cluster.elements.size());
+  }
+  // They are in the clusters now.
+  options.edges = {};
+  options.points = {};
+}
+
+void HomeObject::check_count(const PositionsView& positions, const char* call) const {
+  if (positions.size() == vertex_count_) return;
+  fail(std::string(call) + ": " + std::to_string(positions.size()) + " positions for " + options.name +
+       ", which has " + std::to_string(vertex_count_) + " vertices; give one for each vertex");
+}
+
+void HomeObject::set_positions(const PositionsView& positions) {
+  if (options.is_static) fail("set_positions: " + options.name + " is static and cannot move");
+  check_count(positions, "set_positions");
+  end_.assign(positions);
+  start_.clear();
+  ++version_;
+}
+
+void HomeObject::set_motion(const PositionsView& from, const PositionsView& to) {
+  if (options.is_static) fail("set_motion: " + options.name + " is static and cannot move");
+  check_count(from, "set_motion");
+  check_count(to, "set_motion");
+  if (from.is_double() != to.is_double())
+    fail("set_motion: one end of the path is float, the other double; give both in one precision");
+  start_.assign(from);
+  end_.assign(to);
+  ++version_;
+}
+
+bool HomeObject::is_finite_at(const SearchedShapes& shapes, std::uint32_t v) const {
+  return is_finite(end_[v]) && (!shapes.moving || start_.size() == 0 || is_finite(start_[v]));
+}
+
+/// As `WorldObject::box` of the same elements: faces at rest count only as a whole.
+Aabb HomeObject::box_of(const Cluster& cluster, const SearchedShapes& shapes) const {
+  constexpr float greatest = std::numeric_limits<float>::max();
+  Aabb resting, moving;
+  if (shapes.resting || (!shapes.moving && !shapes.near)) {
+    for (std::size_t f = 0; f < cluster.faces.size(); ++f) {
+      const auto [p, q, r] = cluster.elements[f];
+      const std::array corners{end_[cluster.vertices[p]], end_[cluster.vertices[q]],
+                               end_[cluster.vertices[r]]};
+      if (!std::all_of(corners.begin(), corners.end(), [](const Vec3d& x) { return is_finite(x); })) continue;
+      for (const Vec3d& corner : corners) extend(resting, corner);
+    }
+  }
+  if (shapes.moving || shapes.near) {
+    for (const std::uint32_t v : cluster.vertices) {
+      if (!is_finite_at({}, v)) continue;
+      const bool is_on_path = shapes.moving && start_.size() != 0;
+      if (!is_on_path || is_finite(start_[v])) extend(moving, end_[v]);
+      if (is_on_path && is_finite(start_[v])) extend(moving, start_[v]);
+      if (is_on_path && shapes.near) extend(moving, end_[v]);
+    }
+    for (int axis = 0; axis < 3 && !moving.empty(); ++axis) {
+      moving.min[axis] = std::max(moving.min[axis], -greatest);
+      moving.max[axis] = std::min(moving.max[axis], greatest);
+    }
+  }
+  extend(resting, moving);
+  return resting;
+}
+
+void HomeObject::update_boxes(const SearchedShapes& shapes, const Parallel& parallel) {
+  parallel.for_ranges(clusters.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t c = begin; c < end; ++c) clusters[c].box = box_of(clusters[c], shapes);
+  });
+  box = {};
+  for (const Cluster& cluster : clusters) extend(box, cluster.box);
+}
+
+void HomeObject::list_non_finite(const SearchedShapes& shapes, std::vector<NonFiniteVertex>& vertices) const {
+  std::vector<std::uint32_t> found;
+  for (const Cluster& cluster : clusters) {
+    for (const std::uint32_t v : cluster.vertices) {
+      if (!is_finite_at(shapes, v)) found.push_back(v);
+    }
+  }
+  sort_once(found);
+  for (const std::uint32_t v : found)
+    vertices.push_back({id, user_vertex(v), is_finite(end_[v]) ? start_[v] : end_[v]});
+}
+
+void HomeObject::write_topology(std::uint32_t cluster, Writer& to) const {
+  const Cluster& written = clusters[cluster];
+  to.put_all(written.elements);
+  to.put_all(written.faces);
+  to.put<std::uint64_t>(written.vertices.size());
+  for (const std::uint32_t v : written.vertices) to.put(user_vertex(v));
+}
+
+void HomeObject::write_positions(std::uint32_t cluster, Writer& to) const {
+  const std::vector<std::uint32_t>& vertices = clusters[cluster].vertices;
+  to.put(end_.is_double);
+  to.put(start_.size() != 0);
+  for (const Coordinates* const moment : {&start_, &end_}) {
+    if (moment == &start_ && start_.size() == 0) continue;
+    to.put<std::uint64_t>(3 * vertices.size());
+    if (moment->is_double) {
+      write(moment->doubles, vertices, to);
+    } else {
+      write(moment->floats, vertices, to);
+    }
+  }
+}
+
+}  // namespace supple

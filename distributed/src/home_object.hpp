@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "answers/question.hpp"
+#include "bytes.hpp"
+#include "core/parallel.hpp"
+#include "supple/distributed.hpp"
+#include "supple/mesh.hpp"
+#include "supple/options.hpp"
+#include "supple/views.hpp"
+
+namespace supple {
+
+/// Packed x y z of vertices, in the precision of the user.
+struct Coordinates {
+  bool is_double = true;
+  std::vector<float> floats;
+  std::vector<double> doubles;
+
+  void assign(const PositionsView& positions);
+  void clear() { *this = {}; }
+  std::size_t size() const { return (is_double ? doubles.size() : floats.size()) / 3; }
+  Vec3d operator[](std::size_t i) const {
+    if (is_double) return {doubles[3 * i], doubles[3 * i + 1], doubles[3 * i + 2]};
+    return {floats[3 * i], floats[3 * i + 1], floats[3 * i + 2]};
+  }
+  PositionsView view() const { return is_double ? PositionsView(doubles) : PositionsView(floats); }
+};
+
+/// Neighbouring triangles of an object, and edges and points of no triangle.
+struct Cluster {
+  std::vector<std::uint32_t> vertices;  ///< of the part, ascending
+  /// Corners as indices into `vertices`: first the faces, then other elements with repeated corners.
+  std::vector<Triangle> elements;
+  std::vector<std::uint32_t> faces;  ///< the user's numbers
+  Aabb box;                          ///< at the last `update_boxes`
+  double work = 0;                   ///< of the last step, in triangles
+};
+
+/// An object, or a part of it, on the rank that added it.
+class HomeObject {
+ public:
+  HomeObject(ObjectId id, const PositionsView& positions, const TrianglesView& triangles,
+             const ObjectPart* part, const ObjectOptions& options, std::uint32_t cluster_triangles,
+             std::uint32_t addition);
+
+  void set_positions(const PositionsView& positions);
+  void set_motion(const PositionsView& from, const PositionsView& to);
+  /// The boxes of all clusters, for a search of these shapes. O(n).
+  void update_boxes(const SearchedShapes& shapes, const Parallel& parallel);
+  /// The vertices that are not finite and that an element uses, as the user's numbers, ascending.
+  void list_non_finite(const SearchedShapes& shapes, std::vector<NonFiniteVertex>& vertices) const;
+
+  void write_topology(std::uint32_t cluster, Writer& to) const;
+  void write_positions(std::uint32_t cluster, Writer& to) const;
+
+  bool is_part() const { return is_part_; }
+  std::uint64_t version() const { return version_; }
+  std::uint32_t user_vertex(std::uint32_t v) const { return vertex_ids_.empty() ? v : vertex_ids_[v]; }
+
+  ObjectId id;
+  std::uint32_t addition;  ///< `ClusterName::addition`
+  ObjectOptions options;
+  std::vector<Cluster> clusters;
+  // What all ranks that have a part agree on; set when objects were added or removed.
+  std::vector<int> homes;  ///< on the first of them; else empty
+  Aabb box;                ///< of all parts, on the first home
+  int first_home = 0;
+
+ private:
+  void check_count(const PositionsView& positions, const char* call) const;
+  bool is_finite_at(const SearchedShapes& shapes, std::uint32_t v) const;
+  Aabb box_of(const Cluster& cluster, const SearchedShapes& shapes) const;
+
+  bool is_part_;
+  std::vector<std::uint32_t> vertex_ids_;  // of a part
+  std::size_t vertex_count_;
+  Coordinates start_, end_;  // `start_` is empty at rest
+  std::uint64_t version_ = 1;
+};
+
+}  // namespace supple

@@ -1,0 +1,300 @@
+#include "local_world.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/sort_once.hpp"
+#include "supple/topology.hpp"
+
+namespace supple {
+namespace {
+
+/// Steps after which an object that no pair needs is forgotten.
+constexpr std::uint32_t kept_steps = 16;
+
+std::vector<std::uint32_t> local_numbers(std::span<const std::uint32_t> vertices,
+                                         const std::vector<std::uint32_t>& all) {
+  std::vector<std::uint32_t> local;
+  local.reserve(vertices.size());
+  auto at = all.begin();
+  for (const std::uint32_t v : vertices) {
+    at = std::lower_bound(at, all.end(), v);
+    local.push_back(static_cast<std::uint32_t>(at - all.begin()));
+  }
+  return local;
+}
+
+/// Not finite for all vertices.
+void clear(Coordinates& coordinates, bool is_double, std::size_t vertices) {
+  coordinates.is_double = is_double;
+  coordinates.doubles.assign(is_double ? 3 * vertices : 0, std::numeric_limits<double>::quiet_NaN());
+  coordinates.floats.assign(is_double ? 0 : 3 * vertices, std::numeric_limits<float>::quiet_NaN());
+}
+
+void write(const Coordinates& from, std::span<const std::uint32_t> vertices, Coordinates& to) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t at = 3 * vertices[i] + axis;
+      if (to.is_double) {
+        to.doubles[at] = from.is_double ? from.doubles[3 * i + axis] : double{from.floats[3 * i + axis]};
+      } else {
+        to.floats[at] = from.floats[3 * i + axis];
+      }
+    }
+  }
+}
+
+void read(Reader& from, bool is_double, Coordinates& to) {
+  to.clear();
+  to.is_double = is_double;
+  if (is_double) {
+    from.append_all(to.doubles);
+  } else {
+    from.append_all(to.floats);
+  }
+}
+
+}  // namespace
+
+void write_options(const ObjectOptions& options, Writer& to) {
+  to.put_all(options.name);
+  to.put(options.self_collision);
+  to.put(options.neighbours);
+  to.put(options.margin);
+  to.put(options.min_separation);
+  to.put(options.solid);
+  to.put(options.group);
+  to.put(options.mask);
+}
+
+ObjectOptions read_options(Reader& from) {
+  const std::vector<char> name = from.get_all<char>();
+  ObjectOptions options;
+  options.name.assign(name.begin(), name.end());
+  options.self_collision = from.get<bool>();
+  options.neighbours = from.get<Neighbours>();
+  options.margin = from.get<double>();
+  options.min_separation = from.get<double>();
+  options.solid = from.get<bool>();
+  options.group = from.get<std::uint32_t>();
+  options.mask = from.get<std::uint32_t>();
+  return options;
+}
+
+std::optional<std::uint64_t> LocalWorld::version_of(const ClusterName& name) const {
+  const auto object = objects_.find(name.object);
+  if (object == objects_.end()) return std::nullopt;
+  const std::vector<GuestCluster>& clusters = object->second.clusters;
+  const auto found = std::lower_bound(clusters.begin(), clusters.end(), name,
+                                      [](const GuestCluster& p, const ClusterName& q) { return p.name < q; });
+  if (found == clusters.end() || found->name != name) return std::nullopt;
+  return found->version;
+}
+
+void LocalWorld::begin() {
+  for (auto& [id, object] : objects_) {
+    for (GuestCluster& cluster : object.clusters)
+      cluster.was_needed = std::exchange(cluster.is_needed, false);
+  }
+}
+
+void LocalWorld::read_cluster(const ClusterName& name, std::uint64_t version, bool has_topology,
+                              bool has_positions, Reader& from) {
+  GuestObject& object = objects_[name.object];
+  object.id = name.object;
+  auto cluster = std::lower_bound(object.clusters.begin(), object.clusters.end(), name,
+                                  [](const GuestCluster& p, const ClusterName& q) { return p.name < q; });
+  if (has_topology) {
+    object.options = read_options(from);
+    if (cluster == object.clusters.end() || cluster->name != name)
+      cluster = object.clusters.insert(cluster, GuestCluster{});
+    *cluster = {};
+    cluster->name = name;
+    cluster->elements = from.get_all<Triangle>();
+    cluster->faces = from.get_all<std::uint32_t>();
+    cluster->vertices = from.get_all<std::uint32_t>();
+  }
+  cluster->is_needed = true;
+  cluster->version = version;
+  if (!has_positions) return;
+  const bool is_double = from.get<bool>(), has_start = from.get<bool>();
+  if (has_start) read(from, is_double, cluster->start);
+  read(from, is_double, cluster->end);
+}
+
+void LocalWorld::end(bool are_whole) {
+  for (auto at = objects_.begin(); at != objects_.end();) {
+    GuestObject& object = (at++)->second;
+    const bool is_used = std::any_of(object.clusters.begin(), object.clusters.end(),
+                                     [](const GuestCluster& cluster) { return cluster.is_needed; });
+    object.unused_steps = is_used ? 0 : object.unused_steps + 1;
+    if (is_used) {
+      place(object);
+      make_solid(object, are_whole);
+    } else if (object.unused_steps > kept_steps) {
+      drop(object);
+    }
+  }
+  if (!is_arranged_) arrange();
+}
+
+void LocalWorld::forget() {
+  for (const ObjectId id : world_.objects()) world_.remove(id);
+  objects_.clear();
+  arrange();
+}
+
+/// Parts of a solid are none.
+void LocalWorld::make_solid(GuestObject& object, bool is_whole) {
+  const bool is_solid = is_whole && object.options.solid;
+  world_[object.slot].options.solid = is_solid;
+  if (!is_solid || std::exchange(object.is_checked, true)) return;
+  const ObjectOctree& octree = world_[object.slot].octree();
+  TriangleMesh surface;
+  for (std::uint32_t t = 0; t < object.faces.size(); ++t) surface.triangles.push_back(octree.user_triangle(t));
+  for (std::uint32_t v = 0; v < object.vertices.size(); ++v)
+    surface.positions.push_back(world_[object.slot].placement().position(v));
+  const std::string fault = fault_of_solid(surface);
+  if (!fault.empty()) fail(object.options.name + " is no solid: " + fault);
+}
+
+/// Gives the vertices and triangles of the clusters that are needed their places, and forgets the others.
+void LocalWorld::number_vertices(GuestObject& object) {
+  std::erase_if(object.clusters, [](const GuestCluster& cluster) { return !cluster.is_needed; });
+  object.vertices.clear();
+  object.faces.clear();
+  for (const GuestCluster& cluster : object.clusters) {
+    object.vertices.insert(object.vertices.end(), cluster.vertices.begin(), cluster.vertices.end());
+    object.faces.insert(object.faces.end(), cluster.faces.begin(), cluster.faces.end());
+  }
+  sort_once(object.vertices);
+  std::sort(object.faces.begin(), object.faces.end());
+  for (GuestCluster& cluster : object.clusters)
+    cluster.local = local_numbers(cluster.vertices, object.vertices);
+}
+
+/// Moves an object to the positions of the clusters that are needed.
+void LocalWorld::place(GuestObject& object) {
+  bool is_new = object.slot == none, has_changed = is_new;
+  for (const GuestCluster& cluster : object.clusters) {
+    is_new = is_new || cluster.is_new;
+    has_changed =
+        has_changed || is_new || cluster.end.size() != 0 || cluster.is_needed != cluster.was_needed;
+  }
+  if (!has_changed) return;
+  bool is_double = false, has_start = false;
+  for (GuestCluster& cluster : object.clusters) {
+    if (!cluster.is_needed) {
+      cluster.version = 0;
+      continue;
+    }
+    if (cluster.end.size() == 0 && !cluster.vertices.empty()) fetch(object, cluster);
+    is_double = is_double || cluster.end.is_double;
+    has_start = has_start || cluster.start.size() != 0;
+  }
+  if (is_new) number_vertices(object);
+  clear(end_, is_double, object.vertices.size());
+  if (has_start) clear(start_, is_double, object.vertices.size());
+  for (GuestCluster& cluster : object.clusters) {
+    cluster.is_new = false;
+    if (!cluster.is_needed) continue;
+    if (has_start) write(cluster.start.size() != 0 ? cluster.start : cluster.end, cluster.local, start_);
+    write(cluster.end, cluster.local, end_);
+    cluster.start.clear();
+    cluster.end.clear();
+  }
+  if (is_new) {
+    if (object.slot != none) world_.remove(world_.id_of(object.slot));
+    object.slot = add(object, end_.view()).index;
+    object.is_checked = false;
+    is_arranged_ = false;
+    if (!has_start) return;
+  }
+  const ObjectId local = world_.id_of(object.slot);
+  if (has_start) {
+    world_.set_motion(local, start_.view(), end_.view());
+  } else {
+    world_.set_positions(local, end_.view());
+  }
+}
+
+/// Takes the positions that a cluster had in the last step.
+void LocalWorld::fetch(const GuestObject& object, GuestCluster& cluster) const {
+  const Placement& placement = world_[object.slot].placement();
+  const auto take = [&](Coordinates& to, const auto& position) {
+    clear(to, placement.is_double(), cluster.local.size());
+    for (std::size_t i = 0; i < cluster.local.size(); ++i) {
+      const Vec3d p = position(cluster.local[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t at = 3 * i + static_cast<std::size_t>(axis);
+        if (to.is_double) {
+          to.doubles[at] = p[axis];
+        } else {
+          to.floats[at] = static_cast<float>(p[axis]);
+        }
+      }
+    }
+  };
+  if (placement.has_motion()) take(cluster.start, [&](std::uint32_t v) { return placement.start_position(v); });
+  take(cluster.end, [&](std::uint32_t v) { return placement.position(v); });
+}
+
+ObjectId LocalWorld::add(GuestObject& object, const PositionsView& positions) {
+  ObjectOptions options = object.options;
+  options.solid = false;  // until `make_solid`
+  std::vector<std::pair<std::uint32_t, Triangle>> numbered;
+  for (const GuestCluster& cluster : object.clusters) {
+    for (std::size_t e = 0; e < cluster.elements.size(); ++e) {
+      Triangle corners = cluster.elements[e];
+      for (std::uint32_t& corner : corners) corner = cluster.local[corner];
+      if (e < cluster.faces.size()) {
+        numbered.push_back({cluster.faces[e], corners});
+      } else if (corners[0] == corners[1]) {
+        options.points.push_back(corners[0]);
+      } else {
+        options.edges.push_back({corners[0], corners[1]});
+      }
+    }
+  }
+  std::sort(numbered.begin(), numbered.end());
+  std::vector<Triangle> faces;
+  faces.reserve(numbered.size());
+  for (const auto& [number, corners] : numbered) faces.push_back(corners);
+  return world_.add(positions, faces, options, "");
+}
+
+void LocalWorld::drop(GuestObject& object) {
+  if (object.slot != none) world_.remove(world_.id_of(object.slot));
+  is_arranged_ = false;
+  objects_.erase(object.id);
+}
+
+/// Gives the objects of the world the order of their ids.
+void LocalWorld::arrange() {
+  std::vector<std::uint32_t> slots;
+  by_slot_.clear();
+  for (auto& [id, object] : objects_) {
+    if (object.slot == none) continue;
+    slots.push_back(object.slot);
+    by_slot_.push_back(&object);
+  }
+  world_.arrange(slots);
+  std::uint32_t slot = 0;
+  for (auto& [id, object] : objects_) {
+    if (object.slot != none) object.slot = slot++;
+  }
+  is_arranged_ = true;
+}
+
+std::uint64_t LocalWorld::needed_triangles() const {
+  std::uint64_t count = 0;
+  for (const auto& [id, object] : objects_) {
+    for (const GuestCluster& cluster : object.clusters) count += cluster.is_needed ? cluster.elements.size() : 0;
+  }
+  return count;
+}
+
+}  // namespace supple

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "bytes.hpp"
+#include "home_object.hpp"
+#include "supple/options.hpp"
+#include "world/world.hpp"
+
+namespace supple {
+
+/// Names a cluster among all ranks.
+struct ClusterName {
+  ObjectId object;
+  std::int32_t home = 0;
+  std::uint32_t addition = 0;  ///< counts what the home has added, because an id can return
+  std::uint32_t cluster = 0;
+
+  constexpr auto operator<=>(const ClusterName&) const = default;
+};
+
+/// What the home of an object says of it with the topology of a cluster.
+void write_options(const ObjectOptions& options, Writer& to);
+ObjectOptions read_options(Reader& from);
+
+/// The clusters that a rank needs for its pairs, as objects of a world. The clusters of one object are one
+/// object there, in which vertices and triangles have the order of the user's numbers, and the objects have
+/// the order of their ids. So contacts have the same sides and the same bits as in the whole scene. Clusters
+/// that are not needed now stay for a while, with vertices that are not finite.
+class LocalWorld {
+ public:
+  explicit LocalWorld(const SceneOptions& options) : world_(options) {}
+
+  /// The version of the positions that it has, 0 for none; nothing when it lacks the topology.
+  std::optional<std::uint64_t> version_of(const ClusterName& name) const;
+  /// Calls `visit(cluster, version)` for the clusters that it has of an object from one home.
+  template <class Visit>
+  void for_each_known(ObjectId object, int home, const Visit& visit) const {
+    const auto found = objects_.find(object);
+    if (found == objects_.end()) return;
+    for (const GuestCluster& guest : found->second.clusters) {
+      if (guest.name.home == home) visit(guest.name, guest.version);
+    }
+  }
+  /// Starts a step, in which no cluster is needed yet.
+  void begin();
+  /// Reads a cluster that is needed, with what `HomeObject` wrote of it.
+  void read_cluster(const ClusterName& name, std::uint64_t version, bool has_topology, bool has_positions,
+                    Reader& from);
+  /// Places all objects. `are_whole` says that all clusters of the objects are needed: then those that are
+  /// solid become solids. Throws `Error` when one is none; call `forget` then.
+  void end(bool are_whole);
+  /// Forgets all clusters.
+  void forget();
+
+  World& world() { return world_; }
+  std::uint64_t needed_triangles() const;
+  // The user's numbers of objects, by slot, and of what belongs to them.
+  ObjectId user_object(std::uint32_t slot) const { return by_slot_[slot]->id; }
+  std::uint32_t user_vertex(std::uint32_t slot, std::uint32_t v) const { return by_slot_[slot]->vertices[v]; }
+  std::uint32_t user_face(std::uint32_t slot, std::uint32_t t) const { return by_slot_[slot]->faces[t]; }
+
+ private:
+  struct GuestCluster {
+    ClusterName name;
+    std::vector<Triangle> elements;                ///< corners as indices into `vertices`
+    std::vector<std::uint32_t> faces, vertices;    ///< the user's numbers
+    std::vector<std::uint32_t> local;              ///< the vertices in the object of the world
+    std::uint64_t version = 0;
+    bool is_needed = false, was_needed = false, is_new = true;
+    Coordinates start, end;  ///< until the object is placed
+  };
+  struct GuestObject {
+    ObjectId id;
+    ObjectOptions options;
+    std::vector<GuestCluster> clusters;
+    std::vector<std::uint32_t> vertices, faces;  ///< the user's numbers, ascending
+    std::uint32_t slot = none;
+    std::uint32_t unused_steps = 0;
+    bool is_checked = false;  ///< whether it is a solid
+  };
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+
+  void place(GuestObject& object);
+  void fetch(const GuestObject& object, GuestCluster& cluster) const;
+  void make_solid(GuestObject& object, bool is_whole);
+  static void number_vertices(GuestObject& object);
+  ObjectId add(GuestObject& object, const PositionsView& positions);
+  void drop(GuestObject& object);
+  void arrange();
+
+  World world_;
+  std::map<ObjectId, GuestObject> objects_;
+  std::vector<const GuestObject*> by_slot_;
+  bool is_arranged_ = true;
+  Coordinates start_, end_;  // scratch memory
+};
+
+}  // namespace supple

@@ -1,0 +1,116 @@
+// An error on one rank is the same error on all of them, and the scene stays usable.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "supple/distributed.hpp"
+#include "supple/error.hpp"
+#include "supple/models.hpp"
+
+namespace supple {
+namespace {
+
+template <class Call>
+std::string error_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(DistributedErrors, TheSameErrorOnAllRanks) {
+  DistributedScene scene(MPI_COMM_WORLD, {.scene = {.threads = 1}});
+  const TriangleMesh ball = make_icosphere(3);
+  const int last = scene.rank_count() - 1;
+  // An open surface that one rank declares solid, in parts, so that only the test of two objects can find it.
+  const TriangleMesh cloth = make_cloth(4, 4);
+  std::vector<std::uint32_t> vertices(cloth.positions.size()), triangles(cloth.triangles.size());
+  for (std::uint32_t v = 0; v < vertices.size(); ++v) vertices[v] = v;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = t;
+  if (scene.rank() == last) {
+    scene.add(ObjectId{0}, ball.positions, ball.triangles);
+    scene.add_part(ObjectId{1}, cloth.positions, cloth.triangles, {vertices, triangles},
+                   {.name = "sail", .solid = true});
+  }
+  const std::string error = error_of([&] { scene.detect({.contacts = ContactKinds::penetration}); });
+  EXPECT_NE(error.find("sail is no solid"), std::string::npos) << error;
+  EXPECT_EQ(error.find("rank "), 0u) << error;
+  EXPECT_FALSE(scene.detect().stopped);
+}
+
+TEST(DistributedErrors, AnObjectThatIsOnTwoRanks) {
+  DistributedScene scene(MPI_COMM_WORLD, {.scene = {.threads = 1}});
+  if (scene.rank_count() == 1) GTEST_SKIP() << "needs two ranks";
+  const TriangleMesh ball = make_icosphere(2);
+  if (scene.rank() < 2) scene.add(ObjectId{7}, ball.positions, ball.triangles, {.name = "ball"});
+  const std::string error = error_of([&] { scene.detect(); });
+  EXPECT_NE(error.find("ball is on the ranks 0 and 1; add it on one, or in parts with add_part"),
+            std::string::npos)
+      << error;
+  if (scene.rank() == 1) scene.remove(ObjectId{7});
+  EXPECT_EQ(scene.detect().step, 0u);
+}
+
+TEST(DistributedErrors, PartsWithOtherOptions) {
+  DistributedScene scene(MPI_COMM_WORLD, {.scene = {.threads = 1}});
+  if (scene.rank_count() == 1) GTEST_SKIP() << "needs two ranks";
+  const std::vector<Vec3d> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<std::uint32_t> vertices{0, 1, 2}, face{static_cast<std::uint32_t>(scene.rank())};
+  const std::vector<Triangle> triangle{{0, 1, 2}};
+  scene.add_part(ObjectId{0}, corners, triangle, {vertices, face},
+                 {.name = "sheet", .margin = scene.rank() == 0 ? 0.1 : 0.2});
+  EXPECT_NE(error_of([&] { scene.detect(); }).find("sheet has other options on rank 1 than on rank 0"),
+            std::string::npos);
+}
+
+TEST(DistributedErrors, OfCallsOfOneRank) {
+  DistributedScene scene(MPI_COMM_WORLD, {.scene = {.threads = 1}});
+  const TriangleMesh ball = make_icosphere(2);
+  scene.add(ObjectId{static_cast<std::uint32_t>(scene.rank())}, ball.positions, ball.triangles);
+  const ObjectId mine{static_cast<std::uint32_t>(scene.rank())}, other{1000};
+  EXPECT_NE(error_of([&] { scene.add(mine, ball.positions, ball.triangles); }).find("is on this rank already"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { scene.set_positions(other, ball.positions); }).find("is not on this rank"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { scene.set_positions(mine, std::vector<Vec3d>(3)); }).find("3 positions for object"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { scene.add(other, ball.positions, ball.triangles, {.weld = true}); }).find("weld"),
+            std::string::npos);
+  const std::vector<Triangle> wrong{{0, 1, 99}};
+  EXPECT_NE(error_of([&] { scene.add(other, std::vector<Vec3d>(3), wrong); }).find("uses vertex 99"),
+            std::string::npos);
+  const std::vector<std::uint32_t> vertices{0, 2, 1}, face{0};
+  const std::vector<Triangle> triangle{{0, 1, 2}};
+  EXPECT_NE(error_of([&] {
+              scene.add_part(other, std::vector<Vec3d>(3), triangle, {vertices, face});
+            }).find("number 2 is 1 after 2"),
+            std::string::npos);
+}
+
+TEST(DistributedErrors, OptionsThatAreNotSupported) {
+  const auto with = [](const DistributedOptions& options) {
+    return error_of([&] { DistributedScene scene(MPI_COMM_WORLD, options); });
+  };
+  EXPECT_NE(with({.scene = {.bounding_volume = BoundingVolume::sphere}}), "");
+  EXPECT_NE(with({.cluster_triangles = 0}), "");
+  EXPECT_NE(with({.max_imbalance = 0.5}), "");
+  DistributedScene scene(MPI_COMM_WORLD);
+  EXPECT_NE(error_of([&] { scene.detect({.max_contacts = 3}); }), "");
+  EXPECT_NE(error_of([&] {
+              scene.detect({.contacts = ContactKinds::continuous, .continuous_listing = ContinuousListing::first});
+            }),
+            "");
+}
+
+TEST(DistributedErrors, AnEmptySceneHasNoContacts) {
+  DistributedScene scene(MPI_COMM_WORLD);
+  EXPECT_TRUE(scene.detect().contacts.empty());
+  EXPECT_FALSE(scene.earliest_impact().has_value());
+  EXPECT_EQ(scene.max_step(), SafeStep{});
+}
+
+}  // namespace
+}  // namespace supple
