@@ -8,7 +8,7 @@
 //   FAULT_ALLOCATION=N       the N-th allocation fails
 //   FAULT_ALLOCATIONS_FROM=N the N-th allocation and all later ones fail
 //   FAULT_HDF5=1             allocations of HDF5 count and fail, too
-//   FAULT_HDF5_CRASH=N       a crash within HDF5 exits with status N
+//   FAULT_HDF5_CRASH=N       a crash within HDF5, or its exit, exits with status N
 //   FAULT_CLOCK=MODE         clocks go forward by hours, backward by hours, both in turns (jump), or stop
 //   FAULT_COUNTS=FILE        at exit, writes the numbers of writes and of allocations to this file
 //
@@ -281,6 +281,15 @@ int __libc_start_main(Main main, int count, char** arguments, void (*init)(), vo
   using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
   const auto start = reinterpret_cast<Start>(dlsym(RTLD_NEXT, "__libc_start_main"));
   return start(main_with_faults, count, arguments, init, finish, loader, stack_end);
+}
+
+/// HDF5 1.10 also ends the program where it gets no memory.
+[[noreturn]] void exit(int status) {
+  if (hdf5.contains(__builtin_return_address(0)) && number_of("FAULT_HDF5_CRASH") != never)
+    _exit(static_cast<int>(number_of("FAULT_HDF5_CRASH")));
+  using Exit = void (*)(int);
+  reinterpret_cast<Exit>(dlsym(RTLD_NEXT, "exit"))(status);
+  __builtin_unreachable();
 }
 
 void* malloc(std::size_t size) {

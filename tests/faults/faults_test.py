@@ -91,7 +91,7 @@ def read_only(line):
 
 
 MEGABYTE = 1 << 20
-# HDF5 1.10 crashes when it gets no memory.
+# HDF5 1.10 crashes or exits when it gets no memory.
 HDF5_CRASHED = 90
 HDF5_CRASHES = {"FAULT_HDF5_CRASH": str(HDF5_CRASHED)}
 STREAMS = [
