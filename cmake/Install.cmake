@@ -8,7 +8,7 @@ install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${package_dir})
 
 # Each component has its own targets file, which find_package reads only on request. So a program that links
 # only the core needs none of Assimp, libzip, pugixml and HDF5.
-foreach(component IN ITEMS models simulation formats recording)
+foreach(component IN ITEMS models simulation formats recording distributed)
   if(TARGET supple_${component})
     install(TARGETS supple_${component} EXPORT supple_${component}_targets
       ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -22,6 +22,9 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/suppleConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/suppleConfig.cmake ${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake
   DESTINATION ${package_dir})
+if(TARGET supple_distributed)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/FindZoltan.cmake DESTINATION ${package_dir})
+endif()
 if(TARGET supple_formats)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/FindLIBZIP.cmake DESTINATION ${package_dir})
 endif()

@@ -19,6 +19,8 @@ defaulted comparisons and destructors.
 import json
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 
 sys.path.append("/usr/lib/python3/dist-packages")  # Debian's package, for a Python that is not Debian's
@@ -211,6 +213,8 @@ def read_api(root):
     name = str(root / "api.cpp")
     text = "".join(f'#include "{path}"\n' for _, path in paths)
     folders = sorted({str(path.parent.parent) for _, path in paths})
+    if shutil.which("mpicxx"):  # `distributed` includes its header
+        folders += subprocess.run(["mpicxx", "--showme:incdirs"], capture_output=True, text=True, check=True).stdout.split()
     unit = cindex.Index.create().parse(
         name, ["-xc++", "-std=c++20", *(f"-I{folder}" for folder in folders)], [(name, text)],
         cindex.TranslationUnit.PARSE_DETAILED_PROCESSING_RECORD)

@@ -52,7 +52,7 @@ def read_headers(build):
     for line in lines_of("ninja", "-C", build, "-t", "deps"):
         path = line.strip()
         if not line.startswith(" "):
-            is_of_program = not line.startswith(("tests/", "fuzz/", "examples/", "benchmarks/"))
+            is_of_program = not line.startswith(("tests/", "fuzz/", "examples/", "benchmarks/", "distributed/"))
         elif is_of_program and path.startswith("/usr/"):
             headers.setdefault(str(pathlib.PurePath(path).parent), path)
     return set(headers.values())

@@ -55,10 +55,10 @@ class DistributedScene::Implementation {
 
  private:
   World& world() { return local_.world(); }
-  void prepare(const Question& question);
+  void prepare();
   void agree_on_objects();
   void divide_space();
-  void send_units(const Question& question);
+  void send_units();
   void send_unit(const Unit& unit, const std::vector<int>& homes);
   bool is_tested(ObjectId a, ObjectId b) const;
   void read_units();
@@ -69,15 +69,23 @@ class DistributedScene::Implementation {
   void take_clusters();
 
   ObjectId user(ObjectId local) const { return local_.user_object(local.index); }
+  Vec3d lower_corner(ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
+                     bool on_the_way);
+  template <class Record>
+  bool is_mine(const Record& record);
+  bool reports_all(ObjectId a, ObjectId b);
   int rank_of_pair(ObjectId a, ObjectId b) const;
-  int rank_of_record(ObjectId a, ObjectId b, std::uint32_t element) const;
+  FoundLists& lists_of(ObjectId a);
+  void send_pair(PairList list, ObjectId p, ObjectId q);
+  template <class Record, class Add>
+  void send_groups(std::span<const ContactGroup> groups, std::span<const Record> records, PairList events,
+                   const Add& add);
   Contact named(Contact contact) const;
   ContinuousContact named(ContinuousContact contact) const;
   ProximityPair named(ProximityPair pair) const;
   std::array<std::uint32_t, 2> named(ObjectId object, FeatureKind kind,
                                      const std::array<std::uint32_t, 2>& element) const;
-  std::vector<std::uint32_t> user_vertices(ObjectId object, std::span<const std::uint32_t> vertices) const;
-  void send_results(const Question& question);
+  void send_results();
   void send_penetrations(const DetectResult& found);
   void gather_stats();
 
@@ -93,6 +101,8 @@ class DistributedScene::Implementation {
   Outbox outbox_;
   Inbox inbox_;
   // Of a step.
+  Question question_;
+  Region region_;
   bool by_objects_ = false;  // whole objects are tested
   std::vector<Unit> objects_, clusters_;
   std::map<ObjectId, std::vector<int>> homes_of_;       // of `objects_`
@@ -101,6 +111,7 @@ class DistributedScene::Implementation {
   std::map<ClusterName, double> needed_;                // with their work
   BroadPhase object_phase_{{.threads = 1}}, cluster_phase_{{.threads = 1}};
   FoundLists lists_;
+  std::map<int, FoundLists> outgoing_;  // by rank
   std::array<PairCache, pair_lists> events_;  // by `PairList`
   DetectResult result_;
   std::uint64_t step_ = 0;

@@ -95,26 +95,24 @@ void DistributedScene::Implementation::gather_stats() {
 }
 
 const DetectResult& DistributedScene::Implementation::detect(const DetectRequest& request) {
-  Question question;
   ranks.together([&] {
-    question = question_of(request, options.scene);
+    question_ = supple::question_of(request, options.scene);
     const auto refuse = [](const char* what) { fail(std::string("DistributedScene::detect: ") + what); };
     if (request.max_contacts != DetectRequest{}.max_contacts) refuse("max_contacts is not supported");
-    if (question.manifolds) refuse("manifolds are not supported");
-    if (question.is_continuous() && question.impact.listing == ContinuousListing::first)
+    if (question_.manifolds) refuse("manifolds are not supported");
+    if (question_.is_continuous() && question_.impact.listing == ContinuousListing::first)
       refuse("ContinuousListing::first is not supported");
   });
-  prepare(question);
+  prepare();
   result_ = {};
   ranks.together([&] {
-    detection_.run(question, request.max_contacts, {}, result_.stats);
-    send_results(question);
+    detection_.run(question_, request.max_contacts, {}, result_.stats);
+    send_results();
   });
   ranks.exchange(outbox_, inbox_);
   ranks.together([&] {
-    lists_.clear();
-    inbox_.for_each([&](Reader& from, int) { lists_.read(from); });
-    lists_.arrange();
+    inbox_.for_each([&](Reader& from, int) { lists_.append(from); });
+    lists_.sort();
     lists_.list(result_);
   });
   for (std::size_t list = 0; list < pair_lists; ++list) events_[list].update(lists_.pairs[list]);
@@ -130,7 +128,8 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
 std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impact() {
   const SceneOptions& of = options.scene;
   const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
-  prepare({.contacts = ContactKinds::continuous, .impact = search});
+  question_ = {.contacts = ContactKinds::continuous, .impact = search};
+  prepare();
   std::optional<ContinuousContact> first;
   ranks.together([&] {
     first = step_search_.earliest_impact(search);

@@ -121,6 +121,7 @@ void DistributedScene::Implementation::divide_space() {
   }
   if (!ranks.any(!points.empty())) return;
   regions_.divide(points);
+  region_ = regions_.own();
   stats.divided = true;
 }
 
@@ -134,12 +135,12 @@ void DistributedScene::Implementation::send_unit(const Unit& unit, const std::ve
 }
 
 /// Sends the boxes of clusters, and those of whole objects from their first homes, grown for the search.
-void DistributedScene::Implementation::send_units(const Question& question) {
+void DistributedScene::Implementation::send_units() {
   outbox_.clear();
   stats.clusters = 0;
   for (auto& [id, object] : homes_) {
     const ObjectOptions& of = object.options;
-    const double growth = growth_of(of, nullptr, question);
+    const double growth = growth_of(of, nullptr, question_);
     Unit unit{{id, ranks.rank(), object.addition, all_clusters}, grown(object.box, growth), 0, of.group, of.mask,
               of.is_static, of.self_collision};
     if (!object.homes.empty()) send_unit(unit, object.homes);
@@ -174,10 +175,12 @@ void DistributedScene::Implementation::read_units() {
 void DistributedScene::Implementation::find_object_pairs() {
   std::vector<Aabb> boxes;
   for (const Unit& unit : objects_) boxes.push_back(unit.box);
+  // By the lower corner, so that one rank has each pair.
+  const auto owns = [&](const Aabb& box) { return region_.contains(Vec3d{box.min.x, box.min.y, box.min.z}); };
   object_pairs_.clear();
   for (const auto& [i, j] : object_phase_.find_object_pairs(boxes)) {
     const Unit &a = objects_[i], &b = objects_[j];
-    if (a.may_pair(b) && regions_.rank_of(shared_box(a.box, b.box).min) == ranks.rank())
+    if (a.may_pair(b) && owns(shared_box(a.box, b.box)))
       object_pairs_.push_back({a.name.object, b.name.object});
   }
   tested_.clear();
@@ -185,7 +188,7 @@ void DistributedScene::Implementation::find_object_pairs() {
   if (!by_objects_) return;
   tested_ = object_pairs_;
   for (const Unit& unit : objects_) {
-    if (unit.self_collision && regions_.rank_of(unit.box.min) == ranks.rank())
+    if (unit.self_collision && owns(unit.box))
       tested_.push_back({unit.name.object, unit.name.object});
   }
   for (const auto& [a, b] : tested_) {
@@ -196,7 +199,7 @@ void DistributedScene::Implementation::find_object_pairs() {
   sort_once(tested_);
 }
 
-/// The pairs of clusters of this rank, which needs both.
+/// The pairs of clusters whose boxes meet in the region of this rank, which needs both.
 void DistributedScene::Implementation::find_cluster_pairs() {
   stats.cluster_pairs = 0;
   if (by_objects_) return;
@@ -210,11 +213,11 @@ void DistributedScene::Implementation::find_cluster_pairs() {
     needed_[b.name] += work;
   };
   for (const Unit& unit : clusters_) {
-    if (unit.self_collision && regions_.rank_of(unit.box.min) == ranks.rank()) need(unit, unit);
+    if (unit.self_collision) need(unit, unit);
   }
   for (const auto& [i, j] : cluster_phase_.find_object_pairs(boxes)) {
     const Unit &a = clusters_[i], &b = clusters_[j];
-    if (a.may_pair(b) && regions_.rank_of(shared_box(a.box, b.box).min) == ranks.rank()) need(a, b);
+    if (a.may_pair(b) && region_.meets(shared_box(a.box, b.box))) need(a, b);
   }
   sort_once(tested_);
 }
@@ -290,12 +293,12 @@ bool DistributedScene::Implementation::is_tested(ObjectId a, ObjectId b) const {
 }
 
 /// Brings all that this rank tests into its world.
-void DistributedScene::Implementation::prepare(const Question& question) {
+void DistributedScene::Implementation::prepare() {
   ranks.bytes_sent = ranks.messages_sent = 0;
-  by_objects_ = question.has_penetration();
+  by_objects_ = question_.has_penetration();
   agree_on_objects();
   ranks.together([&] {
-    for (auto& [id, object] : homes_) object.update_boxes(question.shapes(), world().parallel);
+    for (auto& [id, object] : homes_) object.update_boxes(question_.shapes(), world().parallel);
   });
   if (has_parts_) {
     outbox_.clear();
@@ -313,7 +316,7 @@ void DistributedScene::Implementation::prepare(const Question& question) {
     });
   }
   divide_space();
-  ranks.together([&] { send_units(question); });
+  ranks.together([&] { send_units(); });
   ranks.exchange(outbox_, inbox_);
   ranks.together([&] {
     read_units();

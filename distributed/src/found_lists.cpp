@@ -1,25 +1,12 @@
 #include "found_lists.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include "core/sort_once.hpp"
 
 namespace supple {
 namespace {
-
-/// What follows in a message.
-enum class Kind : std::uint8_t {
-  contact,
-  continuous,
-  proximity,
-  penetrations,
-  contained,
-  curve,
-  non_finite,
-  pair,
-};
 
 auto key(const Contact& c) {
   return std::tuple(c.object_a, c.object_b, c.triangle_a, c.triangle_b);
@@ -36,6 +23,7 @@ auto key(const PenetrationGroup& g) {
 auto key(const ContainedPart& p) {
   return std::tuple(p.inner, p.outer, p.vertex);
 }
+/// The curves of two objects are on one rank, in their order.
 auto key(const IntersectionCurve& c) {
   return std::tuple(c.a, c.b);
 }
@@ -43,17 +31,13 @@ auto key(const NonFiniteVertex& v) {
   return std::tuple(v.object, v.vertex);
 }
 
+/// Returns whether anything changed its place. Lists of one rank are in order.
 template <class Record>
-void sort_records(std::vector<Record>& records) {
-  std::stable_sort(records.begin(), records.end(),
-                   [](const Record& p, const Record& q) { return key(p) < key(q); });
-}
-template <class Record>
-void sort_records_once(std::vector<Record>& records) {
-  sort_records(records);
-  const auto end = std::unique(records.begin(), records.end(),
-                               [](const Record& p, const Record& q) { return key(p) == key(q); });
-  records.erase(end, records.end());
+bool sort_records(std::vector<Record>& records) {
+  const auto before = [](const Record& p, const Record& q) { return key(p) < key(q); };
+  if (std::is_sorted(records.begin(), records.end(), before)) return false;
+  std::stable_sort(records.begin(), records.end(), before);
+  return true;
 }
 
 /// Puts ranges of a list into the order of the records that own them.
@@ -86,116 +70,79 @@ void list_groups(const std::vector<Record>& records, std::vector<ContactGroup>& 
   }
 }
 
-/// Appends the items of a message and returns where the first one is.
-template <class Item>
-std::uint32_t append(Reader& from, std::vector<Item>& items) {
-  const std::size_t first = items.size();
-  from.append_all(items);
-  return static_cast<std::uint32_t>(first);
-}
-
 }  // namespace
 
 bool is_before(const ContinuousContact& p, const ContinuousContact& q) {
   return key(p) < key(q);
 }
 
-void write_record(const DetectResult& found, const Contact& contact, Writer& to) {
-  to.put(Kind::contact);
-  to.put(contact);
-  to.put_all(found.points_of(contact));
-}
-void write_record(const DetectResult&, const ContinuousContact& contact, Writer& to) {
-  to.put(Kind::continuous);
-  to.put(contact);
-}
-void write_record(const DetectResult&, const ProximityPair& pair, Writer& to) {
-  to.put(Kind::proximity);
-  to.put(pair);
-}
-void write_record(const ContainedPart& part, Writer& to) {
-  to.put(Kind::contained);
-  to.put(part);
-}
-void write_record(const NonFiniteVertex& vertex, Writer& to) {
-  to.put(Kind::non_finite);
-  to.put(vertex);
-}
-void write_pair(PairList list, const ObjectPair& pair, Writer& to) {
-  to.put(Kind::pair);
-  to.put(list);
-  to.put(pair);
-}
-void write_record(const PenetrationGroup& group, const std::vector<Penetration>& penetrations,
-                  const std::vector<std::uint32_t>& on_surface, Writer& to) {
-  to.put(Kind::penetrations);
-  to.put(group);
-  to.put_all(penetrations);
-  to.put_all(on_surface);
-}
-void write_record(const DetectResult& found, const IntersectionCurve& curve,
-                  const std::vector<std::uint32_t>& contacts, const std::vector<std::uint32_t>& enclosed,
-                  Writer& to) {
-  to.put(Kind::curve);
-  to.put(curve);
-  to.put_all(contacts);
-  to.put_all(found.points_of(curve));
-  to.put_all(enclosed);
+template <class Lists, class Visit>
+void FoundLists::visit(Lists& lists, const Visit& visit) {
+  for (auto& list : lists.pairs) visit(list);
+  visit(lists.contacts);
+  visit(lists.contact_points);
+  visit(lists.continuous_contacts);
+  visit(lists.proximity_pairs);
+  visit(lists.penetration_groups);
+  visit(lists.penetrations);
+  visit(lists.vertices_on_surface);
+  visit(lists.contained_parts);
+  visit(lists.curves);
+  visit(lists.curve_contacts);
+  visit(lists.curve_points);
+  visit(lists.enclosed_vertices);
+  visit(lists.non_finite_vertices);
 }
 
-void FoundLists::read(Reader& from) {
-  while (!from.is_done()) {
-    switch (from.get<Kind>()) {
-      case Kind::contact:
-        contacts.push_back(from.get<Contact>());
-        contacts.back().first_point = append(from, contact_points);
-        break;
-      case Kind::continuous:
-        continuous_contacts.push_back(from.get<ContinuousContact>());
-        break;
-      case Kind::proximity:
-        proximity_pairs.push_back(from.get<ProximityPair>());
-        break;
-      case Kind::penetrations:
-        penetration_groups.push_back(from.get<PenetrationGroup>());
-        penetration_groups.back().first_penetration = append(from, penetrations);
-        penetration_groups.back().first_on_surface = append(from, vertices_on_surface);
-        break;
-      case Kind::contained:
-        contained_parts.push_back(from.get<ContainedPart>());
-        break;
-      case Kind::curve:
-        curves.push_back(from.get<IntersectionCurve>());
-        curves.back().first_contact = append(from, curve_contacts);
-        curves.back().first_point = append(from, curve_points);
-        curves.back().first_enclosed = append(from, enclosed_vertices);
-        break;
-      case Kind::non_finite:
-        non_finite_vertices.push_back(from.get<NonFiniteVertex>());
-        break;
-      case Kind::pair: {
-        const auto list = static_cast<std::size_t>(from.get<PairList>());
-        pairs[list].push_back(from.get<ObjectPair>());
-        break;
-      }
-    }
+void FoundLists::clear() {
+  visit(*this, [](auto& list) { list.clear(); });
+}
+
+bool FoundLists::is_empty() const {
+  bool is_empty = true;
+  visit(*this, [&](const auto& list) { is_empty = is_empty && list.empty(); });
+  return is_empty;
+}
+
+void FoundLists::write(Writer& to) const {
+  visit(*this, [&](const auto& list) { to.put_all(list); });
+}
+
+void FoundLists::append(Reader& from) {
+  const std::size_t old_contacts = contacts.size(), old_groups = penetration_groups.size(),
+                    old_curves = curves.size();
+  const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+  const std::uint32_t points = size(contact_points), depths = size(penetrations),
+                      on_surface = size(vertices_on_surface), linked = size(curve_contacts),
+                      curve_point = size(curve_points), enclosed = size(enclosed_vertices);
+  visit(*this, [&](auto& list) { from.append_all(list); });
+  for (std::size_t i = old_contacts; i < contacts.size(); ++i) contacts[i].first_point += points;
+  for (std::size_t i = old_groups; i < penetration_groups.size(); ++i) {
+    penetration_groups[i].first_penetration += depths;
+    penetration_groups[i].first_on_surface += on_surface;
+  }
+  for (std::size_t i = old_curves; i < curves.size(); ++i) {
+    curves[i].first_contact += linked;
+    curves[i].first_point += curve_point;
+    curves[i].first_enclosed += enclosed;
   }
 }
 
-void FoundLists::arrange() {
+void FoundLists::sort() {
   for (std::vector<ObjectPair>& list : pairs) sort_once(list);
-  sort_records_once(contacts);
-  sort_records_once(continuous_contacts);
-  sort_records_once(proximity_pairs);
-  sort_records(penetration_groups);
+  sort_records(continuous_contacts);
+  sort_records(proximity_pairs);
   sort_records(contained_parts);
-  sort_records(curves);
-  sort_records_once(non_finite_vertices);
-  if (!contact_points.empty()) {
+  sort_records(non_finite_vertices);
+  // Parts of an object share the vertices on their borders.
+  const auto end = std::unique(non_finite_vertices.begin(), non_finite_vertices.end(),
+                               [](const auto& p, const auto& q) { return key(p) == key(q); });
+  non_finite_vertices.erase(end, non_finite_vertices.end());
+  if (sort_records(contacts) && !contact_points.empty()) {
     Reordered points(contact_points);
     for (Contact& contact : contacts) points.take(contact.first_point, contact.point_count);
   }
-  {
+  if (sort_records(penetration_groups)) {
     Reordered depths(penetrations);
     Reordered on_surface(vertices_on_surface);
     for (PenetrationGroup& group : penetration_groups) {
@@ -203,36 +150,35 @@ void FoundLists::arrange() {
       on_surface.take(group.first_on_surface, group.on_surface_count);
     }
   }
-  list_groups(contacts, groups);
-  list_groups(continuous_contacts, continuous_groups);
-  list_groups(proximity_pairs, proximity_groups);
-  {
-    Reordered linked(curve_contacts);
-    Reordered points(curve_points);
-    Reordered enclosed(enclosed_vertices);
-    for (IntersectionCurve& curve : curves) {
-      linked.take(curve.first_contact, curve.contact_count);
-      points.take(curve.first_point, curve.point_count);
-      enclosed.take(curve.first_enclosed, std::size_t{curve.enclosed_count_a} + curve.enclosed_count_b);
-    }
+  if (!sort_records(curves)) return;
+  Reordered linked(curve_contacts);
+  Reordered points(curve_points);
+  Reordered enclosed(enclosed_vertices);
+  for (IntersectionCurve& curve : curves) {
+    linked.take(curve.first_contact, curve.contact_count);
+    points.take(curve.first_point, curve.point_count);
+    enclosed.take(curve.first_enclosed, std::size_t{curve.enclosed_count_a} + curve.enclosed_count_b);
   }
+}
+
+void FoundLists::list(DetectResult& result) {
+  list_groups(contacts, groups_);
+  list_groups(continuous_contacts, continuous_groups_);
+  list_groups(proximity_pairs, proximity_groups_);
   for (const IntersectionCurve& curve : curves) {
     const auto group = std::lower_bound(
-        groups.begin(), groups.end(), std::tuple(curve.a, curve.b),
+        groups_.begin(), groups_.end(), std::tuple(curve.a, curve.b),
         [](const ContactGroup& p, const auto& objects) { return std::tuple(p.a, p.b) < objects; });
     for (std::uint32_t i = 0; i < curve.contact_count; ++i)
       curve_contacts[curve.first_contact + i] += group->first_contact;
   }
-}
-
-void FoundLists::list(DetectResult& result) const {
-  result.object_pairs = pairs[0];
-  result.groups = groups;
+  result.object_pairs = pairs[static_cast<std::size_t>(PairList::volumes)];
+  result.groups = groups_;
   result.contacts = contacts;
   result.contact_points = contact_points;
-  result.continuous_groups = continuous_groups;
+  result.continuous_groups = continuous_groups_;
   result.continuous_contacts = continuous_contacts;
-  result.proximity_groups = proximity_groups;
+  result.proximity_groups = proximity_groups_;
   result.proximity_pairs = proximity_pairs;
   result.penetration_groups = penetration_groups;
   result.penetrations = penetrations;

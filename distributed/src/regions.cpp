@@ -39,7 +39,7 @@ struct Callbacks {
   }
 };
 
-Regions::Regions(const Communicator& communicator) {
+Regions::Regions(const Communicator& communicator) : rank_(communicator.rank()) {
   float version = 0;
   if (Zoltan_Initialize(0, nullptr, &version) != ZOLTAN_OK) fail("Zoltan does not start");
   zoltan_ = Zoltan_Create(communicator.handle());
@@ -75,6 +75,11 @@ void Regions::divide(std::span<const WeightedPoint> points) {
   Zoltan_LB_Free_Part(&export_ids, &export_local, &export_ranks, &export_parts);
   if (status != ZOLTAN_OK && status != ZOLTAN_WARN) fail("Zoltan cannot divide space; it ran out of memory");
   are_divided_ = true;
+  if (ranks_.size() == 1) return;  // Zoltan has no cuts
+  int axes = 0;
+  if (Zoltan_RCB_Box(zoltan_, rank_, &axes, &own_.min.x, &own_.min.y, &own_.min.z, &own_.max.x, &own_.max.y,
+                     &own_.max.z) != ZOLTAN_OK)
+    fail("Zoltan does not tell the region of a rank");
 }
 
 std::span<const int> Regions::ranks_of(const Aabb& box) {
@@ -83,14 +88,6 @@ std::span<const int> Regions::ranks_of(const Aabb& box) {
                                           box.max.z, ranks_.data(), &count);
   if (status != ZOLTAN_OK && status != ZOLTAN_WARN) fail("Zoltan finds no ranks for a box");
   return std::span<const int>(ranks_).first(static_cast<std::size_t>(count));
-}
-
-int Regions::rank_of(const Vec3f& point) {
-  double coordinates[] = {point.x, point.y, point.z};
-  int rank = 0, part = 0;
-  const int status = Zoltan_LB_Point_PP_Assign(zoltan_, coordinates, &rank, &part);
-  if (status != ZOLTAN_OK && status != ZOLTAN_WARN) fail("Zoltan finds no rank for a point");
-  return rank;
 }
 
 }  // namespace supple

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <memory>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,6 +17,33 @@ struct WeightedPoint {
   double weight = 1;
 };
 
+/// The points above `min` and up to `max` along each axis; the outer bounds are the largest numbers and let
+/// everything through.
+struct Region {
+  Vec3d min{-most, -most, -most}, max{most, most, most};
+
+  static constexpr double most = std::numeric_limits<double>::max();
+
+  bool contains(const Vec3d& p) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(p[axis] > min[axis] || min[axis] <= -most) || !(p[axis] <= max[axis] || max[axis] >= most))
+        return false;
+    }
+    return true;
+  }
+  /// Whether all points of the box are in the region.
+  bool contains(const Aabb& box) const {
+    return contains(Vec3d{box.min.x, box.min.y, box.min.z}) && contains(Vec3d{box.max.x, box.max.y, box.max.z});
+  }
+  bool meets(const Aabb& box) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(box.max[axis] > min[axis] || min[axis] <= -most) || !(box.min[axis] <= max[axis] || max[axis] >= most))
+        return false;
+    }
+    return true;
+  }
+};
+
 /// A region of space for each rank, by recursive coordinate bisection.
 class Regions {
  public:
@@ -30,13 +57,15 @@ class Regions {
   bool are_divided() const { return are_divided_; }
   /// The ranks whose regions the box meets, in any order. The span is valid until the next call.
   std::span<const int> ranks_of(const Aabb& box);
-  /// The rank whose region contains the point.
-  int rank_of(const Vec3f& point);
+  /// The region of this rank.
+  Region own() const { return own_; }
 
  private:
   Zoltan_Struct* zoltan_ = nullptr;
   std::span<const WeightedPoint> points_;  // during `divide`
   std::vector<int> ranks_;
+  int rank_;
+  Region own_;
   bool are_divided_ = false;
 
   friend struct Callbacks;

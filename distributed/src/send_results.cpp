@@ -1,35 +1,105 @@
-// Sends what a rank has found to the ranks where the results are, with the user's numbers.
+// Chooses what a rank reports of what it found, and sends it to the ranks where the results are, with the
+// user's numbers.
+//
+// Two clusters are tested by each rank whose region their boxes have in common. So several ranks can find a
+// contact. It is reported by the rank whose region contains the lower corner of what the boxes of its two
+// elements have in common: this point is in the boxes of all clusters that have these elements.
 
 #include <algorithm>
 #include <utility>
 
+#include "answers/object_pairs.hpp"
 #include "distributed_implementation.hpp"
 
 namespace supple {
 namespace {
 
-std::uint64_t mixed(std::uint64_t h, std::uint64_t value) {
-  h = (h ^ value) * 0x9e3779b97f4a7c15u;
-  return h ^ (h >> 29);
+struct Box {
+  Vec3d min, max;
+};
+
+void extend(Box& box, const Vec3d& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = std::min(box.min[axis], p[axis]);
+    box.max[axis] = std::max(box.max[axis], p[axis]);
+  }
 }
+
 std::uint64_t hash_of(ObjectId a, ObjectId b) {
   std::uint64_t h = 0;
-  for (const std::uint32_t part : {a.index, a.generation, b.index, b.generation}) h = mixed(h, part);
+  for (const std::uint32_t part : {a.index, a.generation, b.index, b.generation}) {
+    h = (h ^ part) * 0x9e3779b97f4a7c15u;
+    h ^= h >> 29;
+  }
   return h;
 }
 
 }  // namespace
+
+/// The lowest corner of the box of an element of the world, grown for the search.
+Vec3d DistributedScene::Implementation::lower_corner(ObjectId object, FeatureKind kind,
+                                                     const std::array<std::uint32_t, 2>& element,
+                                                     bool on_the_way) {
+  const WorldObject& found = world()[object.index];
+  const Placement& placement = found.placement();
+  std::array<std::uint32_t, 3> vertices{element[0], element[1], element[1]};
+  if (kind == FeatureKind::face) vertices = found.octree().user_triangle(element[0]);
+  Box box{placement.position(vertices[0]), placement.position(vertices[0])};
+  for (const std::uint32_t v : vertices) {
+    extend(box, placement.position(v));
+    if (on_the_way && placement.has_motion()) extend(box, placement.start_position(v));
+  }
+  const double growth = growth_of(found.options, nullptr, question_);
+  return box.min - Vec3d{growth, growth, growth};
+}
+
+/// Whether this rank reports a pair of elements. `is_sure` says that it reports all pairs of the objects.
+template <class Record>
+bool DistributedScene::Implementation::is_mine(const Record& record) {
+  Vec3d p, q;
+  if constexpr (std::is_same_v<Record, Contact>) {
+    p = lower_corner(record.object_a, FeatureKind::face, {record.triangle_a, 0}, false);
+    q = lower_corner(record.object_b, FeatureKind::face, {record.triangle_b, 0}, false);
+  } else if constexpr (std::is_same_v<Record, ContinuousContact>) {
+    const auto [kind_a, kind_b] = feature_kinds(record.kind);
+    p = lower_corner(record.object_a, kind_a, record.element_a, true);
+    q = lower_corner(record.object_b, kind_b, record.element_b, true);
+  } else {
+    p = lower_corner(record.object_a, record.kind_a, record.element_a, false);
+    q = lower_corner(record.object_b, record.kind_b, record.element_b, false);
+  }
+  return region_.contains(Vec3d{std::max(p.x, q.x), std::max(p.y, q.y), std::max(p.z, q.z)});
+}
+
+/// Whether all that is found of two objects of the world is reported here: they are tested nowhere else.
+bool DistributedScene::Implementation::reports_all(ObjectId a, ObjectId b) {
+  if (by_objects_ || ranks.size() == 1) return true;
+  const double growth = growth_of(world()[a.index].options, nullptr, question_);
+  return region_.contains(grown(world()[a.index].box(), growth)) ||
+         region_.contains(grown(world()[b.index].box(), growth_of(world()[b.index].options, nullptr, question_)));
+}
 
 int DistributedScene::Implementation::rank_of_pair(ObjectId a, ObjectId b) const {
   if (options.results == ResultPlacement::gathered) return 0;
   return static_cast<int>(hash_of(a, b) % static_cast<std::uint64_t>(ranks.size()));
 }
 
-/// The objects have the user's numbers.
-int DistributedScene::Implementation::rank_of_record(ObjectId a, ObjectId b, std::uint32_t element) const {
-  if (options.results == ResultPlacement::owner) return owners_.at(a);
-  if (options.results == ResultPlacement::gathered || by_objects_) return rank_of_pair(a, b);
-  return static_cast<int>(mixed(hash_of(a, b), element) % static_cast<std::uint64_t>(ranks.size()));
+/// Where the contacts of an object with others are; it has the user's number.
+FoundLists& DistributedScene::Implementation::lists_of(ObjectId a) {
+  switch (options.results) {
+    case ResultPlacement::gathered:
+      return outgoing_[0];
+    case ResultPlacement::owner:
+      return outgoing_[owners_.at(a)];
+    case ResultPlacement::spread:
+      break;
+  }
+  return outgoing_[ranks.rank()];
+}
+
+void DistributedScene::Implementation::send_pair(PairList list, ObjectId p, ObjectId q) {
+  const auto [a, b] = std::minmax(p, q);
+  if (a != b) outgoing_[rank_of_pair(a, b)].pairs[static_cast<std::size_t>(list)].push_back({a, b});
 }
 
 Contact DistributedScene::Implementation::named(Contact contact) const {
@@ -67,96 +137,100 @@ ProximityPair DistributedScene::Implementation::named(ProximityPair pair) const 
   return pair;
 }
 
-std::vector<std::uint32_t> DistributedScene::Implementation::user_vertices(
-    ObjectId object, std::span<const std::uint32_t> vertices) const {
-  std::vector<std::uint32_t> found;
-  for (const std::uint32_t v : vertices) found.push_back(local_.user_vertex(object.index, v));
-  return found;
+/// Adds the records of each group that this rank reports; `add(record, lists)` adds one.
+template <class Record, class Add>
+void DistributedScene::Implementation::send_groups(std::span<const ContactGroup> groups,
+                                                   std::span<const Record> records, PairList events,
+                                                   const Add& add) {
+  for (const ContactGroup& group : groups) {
+    const bool is_sure = reports_all(group.a, group.b);
+    FoundLists* lists = nullptr;
+    for (const Record& record : records.subspan(group.first_contact, group.contact_count)) {
+      if (!is_sure && !is_mine(record)) continue;
+      if (lists == nullptr) lists = &lists_of(user(group.a));
+      add(named(record), *lists);
+    }
+    if (lists != nullptr) send_pair(events, user(group.a), user(group.b));
+  }
 }
 
 void DistributedScene::Implementation::send_penetrations(const DetectResult& found) {
+  const auto append = [&](std::span<const std::uint32_t> vertices, ObjectId object,
+                          std::vector<std::uint32_t>& to) {
+    for (const std::uint32_t v : vertices) to.push_back(local_.user_vertex(object.index, v));
+  };
+  const auto next = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
   for (const PenetrationGroup& group : found.penetration_groups) {
-    PenetrationGroup named_group = group;
-    named_group.a = user(group.a);
-    named_group.b = user(group.b);
-    std::vector<Penetration> depths;
+    const ObjectId a = user(group.a), b = user(group.b);
+    FoundLists& lists = lists_of(a);
+    lists.penetration_groups.push_back({a, b, next(lists.penetrations), group.penetration_count,
+                                        next(lists.vertices_on_surface), group.on_surface_count});
     for (Penetration depth : found.penetrations_of(group)) {
       depth.vertex = local_.user_vertex(group.a.index, depth.vertex);
       depth.triangle = local_.user_face(group.b.index, depth.triangle);
-      depth.object_a = named_group.a;
-      depth.object_b = named_group.b;
-      depths.push_back(depth);
+      depth.object_a = a;
+      depth.object_b = b;
+      lists.penetrations.push_back(depth);
     }
-    Writer to = outbox_.to(rank_of_record(named_group.a, named_group.b, 0));
-    write_record(named_group, depths, user_vertices(group.a, found.vertices_on_surface_of(group)), to);
+    append(found.vertices_on_surface_of(group), group.a, lists.vertices_on_surface);
+    if (group.penetration_count > 0) send_pair(PairList::inside, a, b);
   }
   for (ContainedPart part : found.contained_parts) {
     part.vertex = local_.user_vertex(part.inner.index, part.vertex);
     part.inner = user(part.inner);
     part.outer = user(part.outer);
-    Writer to = outbox_.to(rank_of_record(part.inner, part.outer, 0));
-    write_record(part, to);
+    lists_of(part.inner).contained_parts.push_back(part);
+    send_pair(PairList::inside, part.inner, part.outer);
   }
   for (const IntersectionCurve& curve : found.curves) {
     const auto group = std::lower_bound(
         found.groups.begin(), found.groups.end(), std::pair(curve.a, curve.b),
         [](const ContactGroup& p, const auto& objects) { return std::pair(p.a, p.b) < objects; });
-    std::vector<std::uint32_t> contacts;
+    FoundLists& lists = lists_of(user(curve.a));
+    IntersectionCurve sent = curve;
+    sent.a = user(curve.a);
+    sent.b = user(curve.b);
+    sent.first_contact = next(lists.curve_contacts);
+    sent.first_point = next(lists.curve_points);
+    sent.first_enclosed = next(lists.enclosed_vertices);
+    lists.curves.push_back(sent);
     for (const std::uint32_t contact : found.contacts_of(curve))
-      contacts.push_back(contact - group->first_contact);
-    std::vector<std::uint32_t> enclosed =
-        user_vertices(curve.a, found.enclosed_vertices_of(curve, ContactSide::a));
-    const std::vector<std::uint32_t> of_b =
-        user_vertices(curve.b, found.enclosed_vertices_of(curve, ContactSide::b));
-    enclosed.insert(enclosed.end(), of_b.begin(), of_b.end());
-    IntersectionCurve named_curve = curve;
-    named_curve.a = user(curve.a);
-    named_curve.b = user(curve.b);
-    Writer to = outbox_.to(rank_of_record(named_curve.a, named_curve.b, 0));
-    write_record(found, named_curve, contacts, enclosed, to);
+      lists.curve_contacts.push_back(contact - group->first_contact);
+    const std::span<const Vec3d> points = found.points_of(curve);
+    lists.curve_points.insert(lists.curve_points.end(), points.begin(), points.end());
+    append(found.enclosed_vertices_of(curve, ContactSide::a), curve.a, lists.enclosed_vertices);
+    append(found.enclosed_vertices_of(curve, ContactSide::b), curve.b, lists.enclosed_vertices);
   }
 }
 
-/// Sends what this rank found to where the results are.
-void DistributedScene::Implementation::send_results(const Question& question) {
+/// Fills the messages, and keeps what is of this rank.
+void DistributedScene::Implementation::send_results() {
   DetectResult found;
   detection_.list(found);
-  outbox_.clear();
-  const auto send_all = [&](const auto& records, const auto& element) {
-    for (const auto& record : records) {
-      const auto renamed = named(record);
-      Writer to = outbox_.to(rank_of_record(renamed.object_a, renamed.object_b, element(renamed)));
-      write_record(found, renamed, to);
-    }
-  };
-  send_all(found.contacts, [](const Contact& c) { return c.triangle_a; });
-  send_all(found.continuous_contacts, [](const ContinuousContact& c) { return c.element_a[0]; });
-  send_all(found.proximity_pairs, [](const ProximityPair& p) { return p.element_a[0]; });
+  for (auto& [rank, lists] : outgoing_) lists.clear();
+  send_groups(found.groups, found.contacts, PairList::contacts, [&](Contact contact, FoundLists& lists) {
+    const std::span<const ContactPoint> points = found.points_of(contact);
+    contact.first_point = static_cast<std::uint32_t>(lists.contact_points.size());
+    lists.contacts.push_back(contact);
+    lists.contact_points.insert(lists.contact_points.end(), points.begin(), points.end());
+  });
+  send_groups(found.continuous_groups, found.continuous_contacts, PairList::contacts,
+              [](const ContinuousContact& c, FoundLists& lists) { lists.continuous_contacts.push_back(c); });
+  send_groups(found.proximity_groups, found.proximity_pairs, PairList::margins,
+              [](const ProximityPair& p, FoundLists& lists) { lists.proximity_pairs.push_back(p); });
   send_penetrations(found);
-  const auto send_pair = [&](PairList list, ObjectId p, ObjectId q) {
-    const auto [a, b] = std::minmax(p, q);
-    if (a == b) return;
-    Writer to = outbox_.to(rank_of_pair(a, b));
-    write_pair(list, {a, b}, to);
-  };
   for (const auto& [a, b] : object_pairs_) send_pair(PairList::volumes, a, b);
-  for (const auto groups : {found.groups, found.continuous_groups}) {
-    for (const ContactGroup& group : groups) send_pair(PairList::contacts, user(group.a), user(group.b));
-  }
-  for (const ContactGroup& group : found.proximity_groups)
-    send_pair(PairList::margins, user(group.a), user(group.b));
-  for (const PenetrationGroup& group : found.penetration_groups) {
-    if (group.penetration_count > 0) send_pair(PairList::inside, user(group.a), user(group.b));
-  }
-  for (const ContainedPart& part : found.contained_parts)
-    send_pair(PairList::inside, user(part.inner), user(part.outer));
-  std::vector<NonFiniteVertex> vertices;
   for (const auto& [id, object] : homes_) {
-    object.list_non_finite(question.shapes(), vertices);
-    Writer to = outbox_.to(options.results == ResultPlacement::gathered ? 0 : object.first_home);
-    for (const NonFiniteVertex& vertex : vertices) write_record(vertex, to);
-    vertices.clear();
+    FoundLists& lists = outgoing_[options.results == ResultPlacement::gathered ? 0 : object.first_home];
+    object.list_non_finite(question_.shapes(), lists.non_finite_vertices);
   }
+  outbox_.clear();
+  for (const auto& [rank, lists] : outgoing_) {
+    if (rank == ranks.rank() || lists.is_empty()) continue;
+    Writer to = outbox_.to(rank);
+    lists.write(to);
+  }
+  std::swap(lists_, outgoing_[ranks.rank()]);
 }
 
 }  // namespace supple

@@ -71,12 +71,14 @@ TEST(DistributedErrors, OfCallsOfOneRank) {
   const TriangleMesh ball = make_icosphere(2);
   scene.add(ObjectId{static_cast<std::uint32_t>(scene.rank())}, ball.positions, ball.triangles);
   const ObjectId mine{static_cast<std::uint32_t>(scene.rank())}, other{1000};
-  EXPECT_NE(error_of([&] { scene.add(mine, ball.positions, ball.triangles); }).find("is on this rank already"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([&] { scene.add(mine, ball.positions, ball.triangles); }).find("is on this rank already"),
+      std::string::npos);
   EXPECT_NE(error_of([&] { scene.set_positions(other, ball.positions); }).find("is not on this rank"),
             std::string::npos);
-  EXPECT_NE(error_of([&] { scene.set_positions(mine, std::vector<Vec3d>(3)); }).find("3 positions for object"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([&] { scene.set_positions(mine, std::vector<Vec3d>(3)); }).find("3 positions for object"),
+      std::string::npos);
   EXPECT_NE(error_of([&] { scene.add(other, ball.positions, ball.triangles, {.weld = true}); }).find("weld"),
             std::string::npos);
   const std::vector<Triangle> wrong{{0, 1, 99}};
@@ -99,10 +101,11 @@ TEST(DistributedErrors, OptionsThatAreNotSupported) {
   EXPECT_NE(with({.max_imbalance = 0.5}), "");
   DistributedScene scene(MPI_COMM_WORLD);
   EXPECT_NE(error_of([&] { scene.detect({.max_contacts = 3}); }), "");
-  EXPECT_NE(error_of([&] {
-              scene.detect({.contacts = ContactKinds::continuous, .continuous_listing = ContinuousListing::first});
-            }),
-            "");
+  EXPECT_NE(
+      error_of([&] {
+        scene.detect({.contacts = ContactKinds::continuous, .continuous_listing = ContinuousListing::first});
+      }),
+      "");
 }
 
 TEST(DistributedErrors, AnEmptySceneHasNoContacts) {

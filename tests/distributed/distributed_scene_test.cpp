@@ -70,7 +70,8 @@ Part part_of(const LivingObject& object, int rank) {
 }
 
 template <class Scalar>
-std::vector<Vec3<Scalar>> chosen(const std::vector<Vec3d>& positions, const std::vector<std::uint32_t>* some) {
+std::vector<Vec3<Scalar>> chosen(const std::vector<Vec3d>& positions,
+                                 const std::vector<std::uint32_t>* some) {
   std::vector<Vec3<Scalar>> found;
   const auto add = [&](const Vec3d& p) {
     found.push_back({static_cast<Scalar>(p.x), static_cast<Scalar>(p.y), static_cast<Scalar>(p.z)});
@@ -85,7 +86,8 @@ std::vector<Vec3<Scalar>> chosen(const std::vector<Vec3d>& positions, const std:
 
 /// Calls `use(view)` with views of positions in the object's precision.
 template <class Use, class... Lists>
-void with_views(bool is_float, const std::vector<std::uint32_t>* some, const Use& use, const Lists&... lists) {
+void with_views(bool is_float, const std::vector<std::uint32_t>* some, const Use& use,
+                const Lists&... lists) {
   if (is_float) {
     use(PositionsView(chosen<float>(lists, some))...);
   } else {
@@ -114,7 +116,8 @@ template <class Row>
 void expect_same(const char* name, std::span<const Row> found, std::span<const Row> expected,
                  const std::string& where) {
   ASSERT_EQ(found.size(), expected.size()) << name << " " << where;
-  for (std::size_t i = 0; i < found.size(); ++i) ASSERT_TRUE(same_row(found[i], expected[i])) << name << " " << i << " " << where;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    ASSERT_TRUE(same_row(found[i], expected[i])) << name << " " << i << " " << where;
 }
 
 void expect_same(const DetectResult& found, const DetectResult& expected, const std::string& where) {
@@ -138,11 +141,21 @@ class Lives {
   void add_object(bool may_be_solid) {
     LivingObject object;
     switch (random.below(5)) {
-      case 0: object.mesh = make_icosphere(2 + random.below(5)); break;
-      case 1: object.mesh = make_torus(8 + random.below(8), 6 + random.below(4)); break;
-      case 2: object.mesh = make_cloth(3 + random.below(12), 3 + random.below(12)); break;
-      case 3: object.mesh = make_box({0.6, 0.7, 0.8}, 1 + random.below(4)); break;
-      default: object.mesh = soup(); break;
+      case 0:
+        object.mesh = make_icosphere(2 + random.below(5));
+        break;
+      case 1:
+        object.mesh = make_torus(8 + random.below(8), 6 + random.below(4));
+        break;
+      case 2:
+        object.mesh = make_cloth(3 + random.below(12), 3 + random.below(12));
+        break;
+      case 3:
+        object.mesh = make_box({0.6, 0.7, 0.8}, 1 + random.below(4));
+        break;
+      default:
+        object.mesh = soup();
+        break;
     }
     const bool is_closed = object.mesh.name != "cloth" && object.mesh.name != "soup";
     ObjectOptions& options = object.options;
@@ -162,8 +175,9 @@ class Lives {
     object.is_float = random.below(3) == 0;
     object.place = random.vector(1.5);
     object.now = moved(object);
-    object.id = with_positions(object, object.now, nullptr,
-                               [&](const PositionsView& view) { return plain.add(view, object.mesh.triangles, options); });
+    object.id = with_positions(object, object.now, nullptr, [&](const PositionsView& view) {
+      return plain.add(view, object.mesh.triangles, options);
+    });
     settle(object);
     objects.push_back(std::move(object));
   }
@@ -197,9 +211,12 @@ class Lives {
                                  : std::numeric_limits<double>::infinity();
       if (random.below(30) == 0) object.now[0].x = 1e30;
       place(object);
-      with_views(object.is_float, nullptr, [&](const PositionsView& from, const PositionsView& now) {
-        object.is_on_path ? plain.set_motion(object.id, from, now) : plain.set_positions(object.id, now);
-      }, object.from, object.now);
+      with_views(
+          object.is_float, nullptr,
+          [&](const PositionsView& from, const PositionsView& now) {
+            object.is_on_path ? plain.set_motion(object.id, from, now) : plain.set_positions(object.id, now);
+          },
+          object.from, object.now);
     }
   }
 
@@ -236,7 +253,8 @@ class Lives {
   static ObjectId with_positions(const LivingObject& object, const std::vector<Vec3d>& positions,
                                  const std::vector<std::uint32_t>* some, const Use& use) {
     ObjectId id;
-    with_views(object.is_float, some, [&](const PositionsView& view) { id = use(view); }, positions);
+    with_views(
+        object.is_float, some, [&](const PositionsView& view) { id = use(view); }, positions);
     return id;
   }
 
@@ -255,13 +273,17 @@ class Lives {
       }
     }
     for_my_part(object, [&](const Part* part) {
-      with_views(object.is_float, part != nullptr ? &part->vertices : nullptr, [&](const PositionsView& view) {
-        if (part == nullptr) {
-          distributed.add(object.id, view, object.mesh.triangles, object.options);
-        } else {
-          distributed.add_part(object.id, view, part->corners, {part->vertices, part->triangles}, object.options);
-        }
-      }, object.now);
+      with_views(
+          object.is_float, part != nullptr ? &part->vertices : nullptr,
+          [&](const PositionsView& view) {
+            if (part == nullptr) {
+              distributed.add(object.id, view, object.mesh.triangles, object.options);
+            } else {
+              distributed.add_part(object.id, view, part->corners, {part->vertices, part->triangles},
+                                   object.options);
+            }
+          },
+          object.now);
     });
   }
 
@@ -271,11 +293,13 @@ class Lives {
 
   void place(const LivingObject& object) {
     for_my_part(object, [&](const Part* part) {
-      with_views(object.is_float, part != nullptr ? &part->vertices : nullptr,
-                 [&](const PositionsView& from, const PositionsView& now) {
-                   object.is_on_path ? distributed.set_motion(object.id, from, now)
-                                     : distributed.set_positions(object.id, now);
-                 }, object.from, object.now);
+      with_views(
+          object.is_float, part != nullptr ? &part->vertices : nullptr,
+          [&](const PositionsView& from, const PositionsView& now) {
+            object.is_on_path ? distributed.set_motion(object.id, from, now)
+                              : distributed.set_positions(object.id, now);
+          },
+          object.from, object.now);
     });
   }
 
@@ -320,10 +344,12 @@ void live(std::uint64_t seed, ContactKinds contacts, const DistributedOptions& o
 }
 
 TEST(DistributedScene, IntersectionsEqualOneScene) {
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) live(seed, ContactKinds::intersection, small_clusters(), 12);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+    live(seed, ContactKinds::intersection, small_clusters(), 12);
 }
 TEST(DistributedScene, ContinuousContactsEqualOneScene) {
-  for (std::uint64_t seed = 11; seed <= 18; ++seed) live(seed, ContactKinds::continuous, small_clusters(), 12);
+  for (std::uint64_t seed = 11; seed <= 18; ++seed)
+    live(seed, ContactKinds::continuous, small_clusters(), 12);
 }
 TEST(DistributedScene, ProximityEqualsOneScene) {
   for (std::uint64_t seed = 21; seed <= 28; ++seed) live(seed, ContactKinds::proximity, small_clusters(), 12);
@@ -334,7 +360,8 @@ TEST(DistributedScene, ElementsOfProximityEqualOneScene) {
   for (std::uint64_t seed = 31; seed <= 34; ++seed) live(seed, ContactKinds::proximity, options, 12);
 }
 TEST(DistributedScene, PenetrationEqualsOneScene) {
-  for (std::uint64_t seed = 41; seed <= 48; ++seed) live(seed, ContactKinds::penetration, small_clusters(), 12);
+  for (std::uint64_t seed = 41; seed <= 48; ++seed)
+    live(seed, ContactKinds::penetration, small_clusters(), 12);
 }
 TEST(DistributedScene, AllKindsEqualOneScene) {
   const ContactKinds all = ContactKinds::intersection | ContactKinds::continuous | ContactKinds::proximity;
@@ -362,20 +389,20 @@ void expect_spread(ResultPlacement placement) {
       ASSERT_TRUE(std::is_sorted(found.contacts.begin(), found.contacts.end(),
                                  [&](const Contact& p, const Contact& q) { return key(p) < key(q); }));
       for (const Contact& contact : found.contacts) {
-        const auto same = std::lower_bound(expected.contacts.begin(), expected.contacts.end(), contact,
-                                           [&](const Contact& p, const Contact& q) { return key(p) < key(q); });
+        const auto same =
+            std::lower_bound(expected.contacts.begin(), expected.contacts.end(), contact,
+                             [&](const Contact& p, const Contact& q) { return key(p) < key(q); });
         ASSERT_NE(same, expected.contacts.end());
         ASSERT_EQ(key(*same), key(contact));
         ASSERT_EQ(same->normal, contact.normal);
         const auto p = found.points_of(contact), q = expected.points_of(*same);
         ASSERT_TRUE(std::equal(p.begin(), p.end(), q.begin(), q.end()));
         if (placement != ResultPlacement::owner) continue;
-        const auto owner = std::find_if(lives.objects.begin(), lives.objects.end(), [&](const LivingObject& o) {
-          return o.id == contact.object_a;
-        });
-        const int home = owner->rank_of_triangle.empty()
-                             ? owner->home
-                             : *std::min_element(owner->rank_of_triangle.begin(), owner->rank_of_triangle.end());
+        const auto owner = std::find_if(lives.objects.begin(), lives.objects.end(),
+                                        [&](const LivingObject& o) { return o.id == contact.object_a; });
+        const int home = owner->rank_of_triangle.empty() ? owner->home
+                                                         : *std::min_element(owner->rank_of_triangle.begin(),
+                                                                             owner->rank_of_triangle.end());
         ASSERT_EQ(home, lives.distributed.rank());
       }
       std::uint64_t totals[] = {found.contacts.size(), found.object_pairs.size(), !found.contacts.empty()};
@@ -390,8 +417,8 @@ void expect_spread(ResultPlacement placement) {
   EXPECT_EQ(ranks_with_contacts > 1, size_of_world() > 1);
 }
 
-TEST(DistributedScene, BalancedResultsAreOnOneRankEach) {
-  expect_spread(ResultPlacement::balanced);
+TEST(DistributedScene, SpreadResultsAreOnOneRankEach) {
+  expect_spread(ResultPlacement::spread);
 }
 TEST(DistributedScene, ResultsAreOnTheRankOfObjectA) {
   expect_spread(ResultPlacement::owner);

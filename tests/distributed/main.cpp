@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   testing::TestEventListeners& listeners = testing::UnitTest::GetInstance()->listeners();
   if (rank != 0) {
-    const std::unique_ptr<testing::TestEventListener> printer(listeners.Release(listeners.default_result_printer()));
+    const std::unique_ptr<testing::TestEventListener> printer(
+        listeners.Release(listeners.default_result_printer()));
   }
   int failed = RUN_ALL_TESTS();
   MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);

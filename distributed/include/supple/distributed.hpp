@@ -18,10 +18,12 @@ namespace supple {
 /// On which rank the contacts of a step are.
 enum class ResultPlacement : std::uint8_t {
   gathered,  ///< all on rank 0: the lists of `Scene::detect`
-  /// On the rank that added object a; of an object in parts, on the lowest rank that has one of them.
+  /// On the rank that added object a; of an object in parts, on the lowest rank that has one of them. The events
+  /// and pairs of two objects are on a rank that their ids choose.
   owner,
-  /// Spread evenly: by a hash of both objects and of element a; with penetration, of both objects.
-  balanced,
+  /// Where they were found, so nothing is sent: as even as the work. The events and pairs of two objects are on
+  /// a rank that their ids choose.
+  spread,
 };
 
 /// Options of a distributed scene, fixed at its construction and the same on all ranks.
@@ -74,9 +76,9 @@ struct DistributedStats {
 /// bad input or no memory, becomes the same `Error` on all of them, which names the rank.
 ///
 /// Method: clusters of neighbouring triangles are sent as boxes. Recursive coordinate bisection gives each
-/// rank a region of space. Two clusters whose boxes overlap are tested by the rank whose region contains the
-/// lower corner of their intersection; it gets their vertices, the topology only once. Penetration needs whole
-/// objects: the rank that tests two objects gets both.
+/// rank a region of space. Two clusters are tested by each rank whose region the intersection of their boxes
+/// meets; it gets their vertices, the topology only once, and reports the contacts in its region. Penetration
+/// needs whole objects: the rank whose region contains the lower corner of what two boxes share gets both.
 ///
 /// Memory of a rank: the positions and triangles that it added, and octrees of the clusters that it needs.
 class DistributedScene {

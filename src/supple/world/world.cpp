@@ -73,7 +73,8 @@ void World::arrange(std::span<const std::uint32_t> slots) {
   arranged.resize(slots_.size());
   slots_ = std::move(arranged);
   free_slots_.clear();
-  for (auto slot = static_cast<std::uint32_t>(slots_.size()); slot > slots.size();) free_slots_.push_back(--slot);
+  for (auto slot = static_cast<std::uint32_t>(slots_.size()); slot > slots.size();)
+    free_slots_.push_back(--slot);
   versions_.resize(slots_.size(), 0);
   for (std::uint64_t& version : versions_) version = ++last_version_;
   mark_changed();
