@@ -28,7 +28,7 @@ LONGEST_CHAIN = 5
 LONGER_CHAINS = {"octree": 6, "answers": 6, "simulation/src": 7, "viewer/session": 6, "benchmarks": 7}
 MOST_FILES = 20
 # Libraries around the core, each with the last layer whose internal headers it may include; recording: none.
-COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None}
+COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None, "distributed": "scene"}
 PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "experiments", "examples", "benchmarks"]
 # Folders of small programs that do not depend on each other.
 LISTS = ["examples"]

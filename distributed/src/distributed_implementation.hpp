@@ -105,13 +105,13 @@ class DistributedScene::Implementation {
   Region region_;
   bool by_objects_ = false;  // whole objects are tested
   std::vector<Unit> objects_, clusters_;
-  std::map<ObjectId, std::vector<int>> homes_of_;       // of `objects_`
-  std::vector<ObjectPair> object_pairs_, tested_;       // of this rank; `tested_` also of an object with itself
-  std::map<ObjectId, int> owners_;                      // the first homes of objects with clusters here
-  std::map<ClusterName, double> needed_;                // with their work
+  std::map<ObjectId, std::vector<int>> homes_of_;  // of `objects_`
+  std::vector<ObjectPair> object_pairs_, tested_;  // of this rank; `tested_` also of an object with itself
+  std::map<ObjectId, int> owners_;                 // the first homes of objects with clusters here
+  std::map<ClusterName, double> needed_;           // with their work
   BroadPhase object_phase_{{.threads = 1}}, cluster_phase_{{.threads = 1}};
   FoundLists lists_;
-  std::map<int, FoundLists> outgoing_;  // by rank
+  std::map<int, FoundLists> outgoing_;        // by rank
   std::array<PairCache, pair_lists> events_;  // by `PairList`
   DetectResult result_;
   std::uint64_t step_ = 0;

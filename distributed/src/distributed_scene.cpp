@@ -20,8 +20,8 @@ SceneOptions checked(SceneOptions options, const Communicator& communicator) {
   if (options.comparison.colliding_vertices) refuse("colliding vertices need whole octrees");
   if (options.comparison.lazy_refit) refuse("lazy refit needs whole octrees");
   if (options.threads == 0)
-    options.threads = std::max(1u, Parallel(0).worker_count() /
-                                       static_cast<std::uint32_t>(communicator.ranks_of_machine()));
+    options.threads = std::max(
+        1u, Parallel(0).worker_count() / static_cast<std::uint32_t>(communicator.ranks_of_machine()));
   return options;
 }
 
@@ -29,8 +29,12 @@ SceneOptions checked(SceneOptions options, const Communicator& communicator) {
 
 DistributedScene::Implementation::Implementation(MPI_Comm communicator,
                                                  const DistributedOptions& distributed_options)
-    : ranks(communicator), options(distributed_options), regions_(ranks),
-      local_(checked(options.scene, ranks)), detection_(local_.world()), step_search_(local_.world()) {
+    : ranks(communicator),
+      options(distributed_options),
+      regions_(ranks),
+      local_(checked(options.scene, ranks)),
+      detection_(local_.world()),
+      step_search_(local_.world()) {
   if (options.cluster_triangles == 0) fail("DistributedOptions: cluster_triangles is 0; it must be positive");
   if (!(options.max_imbalance >= 1))
     fail("DistributedOptions: max_imbalance is " + std::to_string(options.max_imbalance) +

@@ -141,8 +141,13 @@ void DistributedScene::Implementation::send_units() {
   for (auto& [id, object] : homes_) {
     const ObjectOptions& of = object.options;
     const double growth = growth_of(of, nullptr, question_);
-    Unit unit{{id, ranks.rank(), object.addition, all_clusters}, grown(object.box, growth), 0, of.group, of.mask,
-              of.is_static, of.self_collision};
+    Unit unit{{id, ranks.rank(), object.addition, all_clusters},
+              grown(object.box, growth),
+              0,
+              of.group,
+              of.mask,
+              of.is_static,
+              of.self_collision};
     if (!object.homes.empty()) send_unit(unit, object.homes);
     stats.clusters += object.clusters.size();
     for (std::uint32_t c = 0; c < object.clusters.size() && !by_objects_; ++c) {
@@ -188,8 +193,7 @@ void DistributedScene::Implementation::find_object_pairs() {
   if (!by_objects_) return;
   tested_ = object_pairs_;
   for (const Unit& unit : objects_) {
-    if (unit.self_collision && owns(unit.box))
-      tested_.push_back({unit.name.object, unit.name.object});
+    if (unit.self_collision && owns(unit.box)) tested_.push_back({unit.name.object, unit.name.object});
   }
   for (const auto& [a, b] : tested_) {
     for (const ObjectId id : {a, b}) {
@@ -230,9 +234,10 @@ void DistributedScene::Implementation::request_clusters() {
     to.put(Request{name, version.has_value(), version.value_or(0), work});
     if (name.cluster != all_clusters) continue;
     std::vector<Request> known;
-    local_.for_each_known(name.object, name.home, [&](const ClusterName& cluster, std::uint64_t of_positions) {
-      known.push_back({cluster, true, of_positions, 0});
-    });
+    local_.for_each_known(name.object, name.home,
+                          [&](const ClusterName& cluster, std::uint64_t of_positions) {
+                            known.push_back({cluster, true, of_positions, 0});
+                          });
     to.put_all(known);
   }
 }
@@ -246,8 +251,11 @@ void DistributedScene::Implementation::answer_requests() {
     Writer to = outbox_.to(rank);
     const auto answer = [&](const HomeObject& object, std::uint32_t cluster, bool has_topology,
                             std::uint64_t version) {
-      to.put(Answer{{object.id, ranks.rank(), object.addition, cluster}, object.first_home, object.version(),
-                    !has_topology, version != object.version()});
+      to.put(Answer{{object.id, ranks.rank(), object.addition, cluster},
+                    object.first_home,
+                    object.version(),
+                    !has_topology,
+                    version != object.version()});
       if (!has_topology) {
         write_options(object.options, to);
         object.write_topology(cluster, to);

@@ -90,7 +90,11 @@ void Coordinates::assign(const PositionsView& positions) {
 HomeObject::HomeObject(ObjectId object_id, const PositionsView& positions, const TrianglesView& triangles,
                        const ObjectPart* part, const ObjectOptions& object_options,
                        std::uint32_t cluster_triangles, std::uint32_t addition_number)
-    : id(object_id), addition(addition_number), options(object_options), is_part_(part != nullptr), vertex_count_(positions.size()) {
+    : id(object_id),
+      addition(addition_number),
+      options(object_options),
+      is_part_(part != nullptr),
+      vertex_count_(positions.size()) {
   options.name = named(id, options);
   check(options);
   if (options.weld || !options.same_vertex.empty())

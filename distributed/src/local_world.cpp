@@ -154,7 +154,8 @@ void LocalWorld::make_solid(GuestObject& object, bool is_whole) {
   if (!is_solid || std::exchange(object.is_checked, true)) return;
   const ObjectOctree& octree = world_[object.slot].octree();
   TriangleMesh surface;
-  for (std::uint32_t t = 0; t < object.faces.size(); ++t) surface.triangles.push_back(octree.user_triangle(t));
+  for (std::uint32_t t = 0; t < object.faces.size(); ++t)
+    surface.triangles.push_back(octree.user_triangle(t));
   for (std::uint32_t v = 0; v < object.vertices.size(); ++v)
     surface.positions.push_back(world_[object.slot].placement().position(v));
   const std::string fault = fault_of_solid(surface);
@@ -181,8 +182,7 @@ void LocalWorld::place(GuestObject& object) {
   bool is_new = object.slot == none, has_changed = is_new;
   for (const GuestCluster& cluster : object.clusters) {
     is_new = is_new || cluster.is_new;
-    has_changed =
-        has_changed || is_new || cluster.end.size() != 0 || cluster.is_needed != cluster.was_needed;
+    has_changed = has_changed || is_new || cluster.end.size() != 0 || cluster.is_needed != cluster.was_needed;
   }
   if (!has_changed) return;
   bool is_double = false, has_start = false;
@@ -238,7 +238,8 @@ void LocalWorld::fetch(const GuestObject& object, GuestCluster& cluster) const {
       }
     }
   };
-  if (placement.has_motion()) take(cluster.start, [&](std::uint32_t v) { return placement.start_position(v); });
+  if (placement.has_motion())
+    take(cluster.start, [&](std::uint32_t v) { return placement.start_position(v); });
   take(cluster.end, [&](std::uint32_t v) { return placement.position(v); });
 }
 
@@ -292,7 +293,8 @@ void LocalWorld::arrange() {
 std::uint64_t LocalWorld::needed_triangles() const {
   std::uint64_t count = 0;
   for (const auto& [id, object] : objects_) {
-    for (const GuestCluster& cluster : object.clusters) count += cluster.is_needed ? cluster.elements.size() : 0;
+    for (const GuestCluster& cluster : object.clusters)
+      count += cluster.is_needed ? cluster.elements.size() : 0;
   }
   return count;
 }

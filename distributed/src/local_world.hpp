@@ -67,9 +67,9 @@ class LocalWorld {
  private:
   struct GuestCluster {
     ClusterName name;
-    std::vector<Triangle> elements;                ///< corners as indices into `vertices`
-    std::vector<std::uint32_t> faces, vertices;    ///< the user's numbers
-    std::vector<std::uint32_t> local;              ///< the vertices in the object of the world
+    std::vector<Triangle> elements;              ///< corners as indices into `vertices`
+    std::vector<std::uint32_t> faces, vertices;  ///< the user's numbers
+    std::vector<std::uint32_t> local;            ///< the vertices in the object of the world
     std::uint64_t version = 0;
     bool is_needed = false, was_needed = false, is_new = true;
     Coordinates start, end;  ///< until the object is placed

@@ -44,10 +44,9 @@ Regions::Regions(const Communicator& communicator) : rank_(communicator.rank()) 
   if (Zoltan_Initialize(0, nullptr, &version) != ZOLTAN_OK) fail("Zoltan does not start");
   zoltan_ = Zoltan_Create(communicator.handle());
   // The level of messages comes first: the others print.
-  const char* const parameters[][2] = {{"DEBUG_LEVEL", "0"},     {"LB_METHOD", "RCB"},
-                                       {"KEEP_CUTS", "1"},       {"RETURN_LISTS", "NONE"},
-                                       {"NUM_GID_ENTRIES", "1"}, {"NUM_LID_ENTRIES", "0"},
-                                       {"OBJ_WEIGHT_DIM", "1"},  {"IMBALANCE_TOL", "1.02"}};
+  const char* const parameters[][2] = {
+      {"DEBUG_LEVEL", "0"},     {"LB_METHOD", "RCB"},     {"KEEP_CUTS", "1"},      {"RETURN_LISTS", "NONE"},
+      {"NUM_GID_ENTRIES", "1"}, {"NUM_LID_ENTRIES", "0"}, {"OBJ_WEIGHT_DIM", "1"}, {"IMBALANCE_TOL", "1.02"}};
   for (const auto& [name, value] : parameters) Zoltan_Set_Param(zoltan_, name, value);
   Zoltan_Set_Num_Obj_Fn(zoltan_, Callbacks::count, this);
   Zoltan_Set_Obj_List_Fn(zoltan_, Callbacks::list, this);

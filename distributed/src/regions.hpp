@@ -33,11 +33,13 @@ struct Region {
   }
   /// Whether all points of the box are in the region.
   bool contains(const Aabb& box) const {
-    return contains(Vec3d{box.min.x, box.min.y, box.min.z}) && contains(Vec3d{box.max.x, box.max.y, box.max.z});
+    return contains(Vec3d{box.min.x, box.min.y, box.min.z}) &&
+           contains(Vec3d{box.max.x, box.max.y, box.max.z});
   }
   bool meets(const Aabb& box) const {
     for (int axis = 0; axis < 3; ++axis) {
-      if (!(box.max[axis] > min[axis] || min[axis] <= -most) || !(box.min[axis] <= max[axis] || max[axis] >= most))
+      if (!(box.max[axis] > min[axis] || min[axis] <= -most) ||
+          !(box.min[axis] <= max[axis] || max[axis] >= most))
         return false;
     }
     return true;

@@ -76,7 +76,8 @@ bool DistributedScene::Implementation::reports_all(ObjectId a, ObjectId b) {
   if (by_objects_ || ranks.size() == 1) return true;
   const double growth = growth_of(world()[a.index].options, nullptr, question_);
   return region_.contains(grown(world()[a.index].box(), growth)) ||
-         region_.contains(grown(world()[b.index].box(), growth_of(world()[b.index].options, nullptr, question_)));
+         region_.contains(
+             grown(world()[b.index].box(), growth_of(world()[b.index].options, nullptr, question_)));
 }
 
 int DistributedScene::Implementation::rank_of_pair(ObjectId a, ObjectId b) const {

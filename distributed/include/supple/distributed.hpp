@@ -18,11 +18,11 @@ namespace supple {
 /// On which rank the contacts of a step are.
 enum class ResultPlacement : std::uint8_t {
   gathered,  ///< all on rank 0: the lists of `Scene::detect`
-  /// On the rank that added object a; of an object in parts, on the lowest rank that has one of them. The events
-  /// and pairs of two objects are on a rank that their ids choose.
+  /// On the rank that added object a; of an object in parts, on the lowest rank that has one of them. The
+  /// events and pairs of two objects are on a rank that their ids choose.
   owner,
-  /// Where they were found, so nothing is sent: as even as the work. The events and pairs of two objects are on
-  /// a rank that their ids choose.
+  /// Where they were found, so nothing is sent: as even as the work. The events and pairs of two objects are
+  /// on a rank that their ids choose.
   spread,
 };
 
@@ -32,7 +32,8 @@ struct DistributedOptions {
   /// volume is the box. Options that exist for comparison are errors where they need whole octrees.
   SceneOptions scene{};
   ResultPlacement results = ResultPlacement::gathered;
-  /// Objects are cut into clusters of at most this many triangles, which are sent where they may touch others.
+  /// Objects are cut into clusters of at most this many triangles, which are sent where they may touch
+  /// others.
   std::uint32_t cluster_triangles = 2048;
   /// Space is divided anew when the work of the busiest rank exceeds the mean by this factor, and by a tenth
   /// more than after the last division. At least 1.
