@@ -40,14 +40,23 @@ int Communicator::ranks_of_machine() const {
   return count;
 }
 
-double Communicator::sum(double value) const {
-  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, handle_);
-  return value;
+void Communicator::sum(std::vector<double>& numbers) const {
+  MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, MPI_SUM, handle_);
 }
 
-double Communicator::largest(double value) const {
-  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, handle_);
-  return value;
+void Communicator::sum(std::vector<std::uint64_t>& numbers) const {
+  MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_UINT64_T, MPI_SUM,
+                handle_);
+}
+
+void Communicator::largest(std::vector<double>& numbers) const {
+  MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, MPI_MAX, handle_);
+}
+
+bool Communicator::any(bool value) const {
+  int found = value ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, handle_);
+  return found != 0;
 }
 
 void Communicator::agree(bool failed, const std::string& error) const {

@@ -80,9 +80,11 @@ class Communicator {
   /// Collective: each rank sends its messages and gets those to it. Only ranks with a message for each other
   /// communicate.
   void exchange(const Outbox& outbox, Inbox& inbox);
-  double sum(double value) const;
-  double largest(double value) const;
-  bool any(bool value) const { return largest(value ? 1 : 0) != 0; }
+  // Collective: each number becomes the sum or the largest of those of all ranks.
+  void sum(std::vector<double>& numbers) const;
+  void sum(std::vector<std::uint64_t>& numbers) const;
+  void largest(std::vector<double>& numbers) const;
+  bool any(bool value) const;
 
   std::uint64_t bytes_sent = 0, messages_sent = 0;  ///< to other ranks
 

@@ -87,7 +87,8 @@ class DistributedScene::Implementation {
                                      const std::array<std::uint32_t, 2>& element) const;
   void send_results();
   void send_penetrations(const DetectResult& found);
-  void gather_stats();
+  void gather_step_stats();
+  void end_step();
 
   std::map<ObjectId, HomeObject> homes_;
   std::uint32_t additions_ = 0;

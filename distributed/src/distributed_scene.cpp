@@ -79,20 +79,41 @@ HomeObject& DistributedScene::Implementation::home(ObjectId id, const char* call
 }
 
 /// Sums the counts of all ranks; times are those of the slowest one.
-void DistributedScene::Implementation::gather_stats() {
-  for_each_field<StepStats>([&](const auto& field) {
-    auto& value = result_.stats.*field.member;
-    using Value = std::remove_cvref_t<decltype(value)>;
-    if constexpr (std::same_as<Value, double>) {
-      value = ranks.largest(value);
-    } else if constexpr (std::same_as<Value, std::uint64_t>) {
-      value = static_cast<std::uint64_t>(ranks.sum(static_cast<double>(value)));
-    }
-  });
+void DistributedScene::Implementation::gather_step_stats() {
+  result_.stats.object_pairs = object_pairs_.size();
+  result_.stats.contacts = lists_.contacts.size() + lists_.continuous_contacts.size();
+  result_.stats.proximity_pairs = lists_.proximity_pairs.size();
+  result_.stats.penetrations = lists_.penetrations.size();
+  result_.stats.curves = lists_.curves.size();
+  std::vector<double> times;
+  std::vector<std::uint64_t> counts;
+  const auto visit_all = [&](const auto& of_time, const auto& of_count) {
+    for_each_field<StepStats>([&](const auto& field) {
+      auto& value = result_.stats.*field.member;
+      using Value = std::remove_cvref_t<decltype(value)>;
+      if constexpr (std::same_as<Value, double>) {
+        of_time(value);
+      } else if constexpr (std::same_as<Value, std::uint64_t>) {
+        of_count(value);
+      }
+    });
+  };
+  visit_all([&](double time) { times.push_back(time); }, [&](std::uint64_t n) { counts.push_back(n); });
+  ranks.largest(times);
+  ranks.sum(counts);
+  auto time = times.begin();
+  auto count = counts.begin();
+  visit_all([&](double& value) { value = *time++; }, [&](std::uint64_t& value) { value = *count++; });
+}
+
+/// What the step took, from which the next one decides whether space is divided anew.
+void DistributedScene::Implementation::end_step() {
   double work = 0;
   for (const auto& [name, of_cluster] : needed_) work += of_cluster;
-  const double mean = ranks.sum(work) / ranks.size(), most = ranks.largest(work);
-  stats.imbalance = mean > 0 ? most / mean : 1;
+  std::vector<double> most{work}, total{work};
+  ranks.largest(most);
+  ranks.sum(total);
+  stats.imbalance = total[0] > 0 ? most[0] * ranks.size() / total[0] : 1;
   if (stats.divided) most_imbalance_ = std::max(options.max_imbalance, 1.1 * stats.imbalance);
   stats.bytes_sent = ranks.bytes_sent;
   stats.messages_sent = ranks.messages_sent;
@@ -125,7 +146,8 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   result_.proximity_events = events_[2].events();
   result_.penetration_events = events_[3].events();
   result_.step = step_++;
-  gather_stats();
+  gather_step_stats();
+  end_step();
   return result_;
 }
 
@@ -139,7 +161,9 @@ std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impa
     first = step_search_.earliest_impact(search);
     if (first) first = named(*first);
   });
-  const double earliest = -ranks.largest(first ? -first->toi : -2);
+  std::vector<double> latest{first ? -first->toi : -2};
+  ranks.largest(latest);
+  const double earliest = -latest[0];
   outbox_.clear();
   if (first && first->toi == earliest) outbox_.to(0).put(*first);
   ranks.exchange(outbox_, inbox_);
@@ -148,7 +172,7 @@ std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impa
     const auto other = from.get<ContinuousContact>();
     if (!first || is_before(other, *first)) first = other;
   });
-  gather_stats();
+  end_step();
   if (earliest > 1) return std::nullopt;
   ContinuousContact found = first.value_or(ContinuousContact{});
   MPI_Bcast(&found, sizeof found, MPI_BYTE, 0, ranks.handle());

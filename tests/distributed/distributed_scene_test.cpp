@@ -335,6 +335,9 @@ void live(std::uint64_t seed, ContactKinds contacts, const DistributedOptions& o
     lives.move_objects(lives.random.below(6) == 0);
     const DetectResult& expected = lives.plain.detect({.contacts = contacts});
     const DetectResult& found = lives.distributed.detect({.contacts = contacts});
+    for (const auto count : {&StepStats::object_pairs, &StepStats::contacts, &StepStats::proximity_pairs,
+                             &StepStats::penetrations, &StepStats::curves})
+      EXPECT_EQ(found.stats.*count, expected.stats.*count);
     if (lives.distributed.rank() == 0)
       expect_same(found, expected, "seed " + std::to_string(seed) + " step " + std::to_string(step));
     int failed = testing::Test::HasFailure() ? 1 : 0;
