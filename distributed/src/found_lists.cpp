@@ -23,9 +23,9 @@ auto key(const PenetrationGroup& g) {
 auto key(const ContainedPart& p) {
   return std::tuple(p.inner, p.outer, p.vertex);
 }
-/// The curves of two objects are on one rank, in their order.
+/// The curves of two objects are on one rank, and so their contacts are in their order.
 auto key(const IntersectionCurve& c) {
-  return std::tuple(c.a, c.b);
+  return std::tuple(c.a, c.b, c.first_contact);
 }
 auto key(const NonFiniteVertex& v) {
   return std::tuple(v.object, v.vertex);
@@ -36,7 +36,7 @@ template <class Record>
 bool sort_records(std::vector<Record>& records) {
   const auto before = [](const Record& p, const Record& q) { return key(p) < key(q); };
   if (std::is_sorted(records.begin(), records.end(), before)) return false;
-  std::stable_sort(records.begin(), records.end(), before);
+  std::sort(records.begin(), records.end(), before);
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -316,6 +317,12 @@ class Lives {
   std::uint32_t added_ = 0;
 };
 
+/// How many lives each test has; the long test has more.
+std::uint64_t life_count() {
+  const char* const given = std::getenv("SUPPLE_LIVES");
+  return given != nullptr ? static_cast<std::uint64_t>(std::atoi(given)) : 2;
+}
+
 DistributedOptions small_clusters() {
   DistributedOptions options;
   options.cluster_triangles = 16;
@@ -346,32 +353,33 @@ void live(std::uint64_t seed, ContactKinds contacts, const DistributedOptions& o
   }
 }
 
+/// Each step of random lives equals that of one scene.
+void live_all(ContactKinds contacts, const DistributedOptions& options) {
+  for (std::uint64_t seed = 1; seed <= life_count(); ++seed)
+    live(100 * static_cast<std::uint64_t>(contacts) + seed, contacts, options, 10);
+}
+
 TEST(DistributedScene, IntersectionsEqualOneScene) {
-  for (std::uint64_t seed = 1; seed <= 8; ++seed)
-    live(seed, ContactKinds::intersection, small_clusters(), 12);
+  live_all(ContactKinds::intersection, small_clusters());
 }
 TEST(DistributedScene, ContinuousContactsEqualOneScene) {
-  for (std::uint64_t seed = 11; seed <= 18; ++seed)
-    live(seed, ContactKinds::continuous, small_clusters(), 12);
+  live_all(ContactKinds::continuous, small_clusters());
 }
 TEST(DistributedScene, ProximityEqualsOneScene) {
-  for (std::uint64_t seed = 21; seed <= 28; ++seed) live(seed, ContactKinds::proximity, small_clusters(), 12);
+  live_all(ContactKinds::proximity, small_clusters());
 }
 TEST(DistributedScene, ElementsOfProximityEqualOneScene) {
   DistributedOptions options = small_clusters();
   options.scene.proximity_listing = ProximityListing::elements;
-  for (std::uint64_t seed = 31; seed <= 34; ++seed) live(seed, ContactKinds::proximity, options, 12);
+  live_all(ContactKinds::proximity, options);
 }
 TEST(DistributedScene, PenetrationEqualsOneScene) {
-  for (std::uint64_t seed = 41; seed <= 48; ++seed)
-    live(seed, ContactKinds::penetration, small_clusters(), 12);
+  live_all(ContactKinds::penetration, small_clusters());
 }
 TEST(DistributedScene, AllKindsEqualOneScene) {
-  const ContactKinds all = ContactKinds::intersection | ContactKinds::continuous | ContactKinds::proximity;
-  for (std::uint64_t seed = 51; seed <= 54; ++seed) {
-    live(seed, all, small_clusters(), 12);
-    live(seed, all | ContactKinds::penetration, small_clusters(), 12);
-  }
+  const ContactKinds kinds = ContactKinds::intersection | ContactKinds::continuous | ContactKinds::proximity;
+  live_all(kinds, small_clusters());
+  live_all(kinds | ContactKinds::penetration, small_clusters());
 }
 
 /// Each contact is on exactly one rank, and each list is in canonical order.
@@ -379,7 +387,7 @@ void expect_spread(ResultPlacement placement) {
   DistributedOptions options = small_clusters();
   options.results = placement;
   std::uint64_t ranks_with_contacts = 0, contacts = 0;
-  for (std::uint64_t seed = 61; seed <= 64; ++seed) {
+  for (std::uint64_t seed = 61; seed < 61 + life_count(); ++seed) {
     Lives lives(seed, options);
     for (int i = 0; i < 8; ++i) lives.add_object(false);
     for (int step = 0; step < 6; ++step) {
@@ -429,7 +437,7 @@ TEST(DistributedScene, ResultsAreOnTheRankOfObjectA) {
 
 TEST(DistributedScene, EarliestImpactsEqualOneScene) {
   int impacts = 0;
-  for (std::uint64_t seed = 71; seed <= 82; ++seed) {
+  for (std::uint64_t seed = 71; seed < 72 + 2 * life_count(); ++seed) {
     Lives lives(seed, small_clusters());
     for (int i = 0; i < 6; ++i) lives.add_object(false);
     for (int step = 0; step < 4; ++step) {
@@ -440,7 +448,7 @@ TEST(DistributedScene, EarliestImpactsEqualOneScene) {
       impacts += expected.has_value() ? 1 : 0;
     }
   }
-  EXPECT_GT(impacts, 4);
+  EXPECT_GT(impacts, 1);
 }
 
 TEST(DistributedScene, WorkIsSpreadOverTheRanks) {
