@@ -168,27 +168,49 @@ bool HomeObject::is_finite_at(const SearchedShapes& shapes, std::uint32_t v) con
   return is_finite(end_[v]) && (!shapes.moving || start_.size() == 0 || is_finite(start_[v]));
 }
 
-/// As `WorldObject::box` of the same elements: faces at rest count only as a whole.
+/// As `WorldObject::box` of the same elements: faces at rest count only as a whole. Rounding is monotonic, so
+/// only the extreme coordinates are rounded.
 Aabb HomeObject::box_of(const Cluster& cluster, const SearchedShapes& shapes) const {
   constexpr float greatest = std::numeric_limits<float>::max();
+  const auto box_around = [&](const Coordinates& positions, const auto& counts) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Vec3d lowest{infinity, infinity, infinity}, highest = -lowest;
+    for (const std::uint32_t v : cluster.vertices) {
+      const Vec3d p = positions[v];
+      if (!is_finite(p) || !counts(v)) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        lowest[axis] = std::min(lowest[axis], p[axis]);
+        highest[axis] = std::max(highest[axis], p[axis]);
+      }
+    }
+    Aabb around;
+    if (lowest.x > highest.x) return around;
+    extend(around, lowest);
+    extend(around, highest);
+    return around;
+  };
   Aabb resting, moving;
   if (shapes.resting || (!shapes.moving && !shapes.near)) {
-    for (std::size_t f = 0; f < cluster.faces.size(); ++f) {
+    const bool all_count = cluster.faces.size() == cluster.elements.size() &&
+                           std::all_of(cluster.vertices.begin(), cluster.vertices.end(),
+                                       [&](std::uint32_t v) { return is_finite(end_[v]); });
+    std::vector<std::uint32_t> counted;  // ascending
+    for (std::size_t f = 0; f < cluster.faces.size() && !all_count; ++f) {
       const auto [p, q, r] = cluster.elements[f];
-      const std::array corners{end_[cluster.vertices[p]], end_[cluster.vertices[q]],
-                               end_[cluster.vertices[r]]};
-      if (!std::all_of(corners.begin(), corners.end(), [](const Vec3d& x) { return is_finite(x); })) continue;
-      for (const Vec3d& corner : corners) extend(resting, corner);
+      const std::array corners{cluster.vertices[p], cluster.vertices[q], cluster.vertices[r]};
+      if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_finite(end_[v]); }))
+        counted.insert(counted.end(), corners.begin(), corners.end());
     }
+    sort_once(counted);
+    resting = box_around(end_, [&](std::uint32_t v) {
+      return all_count || std::binary_search(counted.begin(), counted.end(), v);
+    });
   }
   if (shapes.moving || shapes.near) {
-    for (const std::uint32_t v : cluster.vertices) {
-      if (!is_finite_at({}, v)) continue;
-      const bool is_on_path = shapes.moving && start_.size() != 0;
-      if (!is_on_path || is_finite(start_[v])) extend(moving, end_[v]);
-      if (is_on_path && is_finite(start_[v])) extend(moving, start_[v]);
-      if (is_on_path && shapes.near) extend(moving, end_[v]);
-    }
+    const bool is_on_path = shapes.moving && start_.size() != 0;
+    moving =
+        box_around(end_, [&](std::uint32_t v) { return !is_on_path || shapes.near || is_finite(start_[v]); });
+    if (is_on_path) extend(moving, box_around(start_, [&](std::uint32_t v) { return is_finite(end_[v]); }));
     for (int axis = 0; axis < 3 && !moving.empty(); ++axis) {
       moving.min[axis] = std::max(moving.min[axis], -greatest);
       moving.max[axis] = std::min(moving.max[axis], greatest);
