@@ -20,7 +20,8 @@ from ._elements import (
     point_triangle_distance,
     triangles_intersect,
 )
-from ._experiment import Experiment, experiment
+from ._experiment import Experiment, experiment, experiments
+from ._frames import map_frames
 from ._generated import *  # noqa: F403
 from ._generated import CONTRACTS
 from ._inspection import Inspector, NodePairs
@@ -145,6 +146,7 @@ __all__ = [
     "dtypes",
     "edge_edge_distance",
     "experiment",
+    "experiments",
     "enclosing_boxes",
     "fault_of_solid",
     "find_first_difference",
@@ -158,6 +160,7 @@ __all__ = [
     "make_icosphere",
     "make_model",
     "make_torus",
+    "map_frames",
     "method_of_2007",
     "model_names",
     "open",

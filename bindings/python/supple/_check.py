@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import glob
+import dataclasses
 import html
 import os
 import pathlib
-import re
 from typing import Any, Iterator, NamedTuple
 
 import numpy as np
 
-from . import _arrays
-from ._core import Error
-from ._meshes import Mesh, as_mesh, fault_of_solid, split_into_parts, welded
-from ._recording import Recording
+from ._animation import Frames, frames_to_check
+from ._core import Stop
+from ._frames import AnyExecutor, Progress, run
+from ._meshes import Mesh, fault_of_solid, split_into_parts, welded
 from ._scene import Scene
 
 
@@ -131,13 +130,17 @@ def check(
     self_collision: bool = True,
     weld: bool = False,
     parts: bool = False,
-    progress: bool = False,
+    progress: Progress = False,
+    client: AnyExecutor | None = None,
+    stop: Stop | None = None,
+    retries: int = 2,
+    chunk: int | None = None,
 ) -> CheckReport:
     """Checks all frames of an animation for intersections, self-intersections and depths.
 
     `animation` is
-    - the path of a recording (.h5), or a pattern of mesh files of one topology, such as "frame_*.obj", in
-      the order of the numbers in their names,
+    - the path of a recording (.h5), a list of mesh files of one topology, or a pattern of them, such as
+      "frame_*.obj", in the order of the numbers in their names,
     - the path of a USD file (.usd, .usda, .usdc), which needs usd-core; its meshes at each time code.
       Alembic is not read: export USD, or a sequence of OBJ files,
     - an array (frames, n, 3) with `faces` (m, 3), or a list of meshes,
@@ -145,38 +148,69 @@ def check(
 
     Closed surfaces count as solids, for which vertices inside are counted. `weld` joins vertices with equal
     positions, where a mesh is split along seams. `parts` makes an object of each connected part of a mesh.
-    `progress` shows a bar, which needs tqdm.
-    """
-    source, names, topologies, frames, total = _frames(animation, faces)
-    scene = Scene(contacts="penetration")
-    notes: list[str] = []
-    objects: list[tuple[int, Any, Any]] = []  # of which mesh, its object, its vertices
-    checked = []
-    numbered = enumerate(frames)
-    if progress:
-        from tqdm.auto import tqdm
 
-        numbered = tqdm(numbered, total=total, unit="frame")
-    for number, positions in numbered:
-        if not objects:
-            for i, (name, triangles, first) in enumerate(zip(names, topologies, positions)):
-                whole = Mesh(first, triangles, name=name)
-                split = (
-                    [
-                        (part.mesh, f"{name}.{k}", part.vertices)
-                        for k, part in enumerate(split_into_parts(whole, weld))
-                    ]
-                    if parts
-                    else [(whole, name, slice(None))]
-                )
-                objects += [
-                    (i, _add(scene, label, mesh, self_collision, weld, notes), chosen)
-                    for mesh, label, chosen in split
+    `client` runs the frames on many threads, processes or machines: an executor, as `map_frames` takes it
+    and with the same report as without. `progress`, `stop`, `retries` and `chunk` are those of `map_frames`.
+    With `client`, each task builds a scene from frame 0, uses one thread and opens files by their absolute
+    paths. Raises `Error`, which names the frame, for frames that cannot be read or have other triangles.
+    """
+    frames = frames_to_check(animation, faces)
+    checked: list[_Checked] = run(
+        "check",
+        _CheckFrames(self_collision, weld, parts, 0 if client is None else 1),
+        frames,
+        client,
+        progress=progress,
+        stop=stop,
+        retries=retries,
+        chunk=chunk,
+    )
+    names, notes = (checked[0].names, checked[0].notes) if checked else (frames.open().names, [])
+    return CheckReport(
+        frames.name, names, [each.check._replace(frame=i) for i, each in enumerate(checked)], notes
+    )
+
+
+class _Checked(NamedTuple):
+    """A frame, and what all frames have in common."""
+
+    check: FrameCheck
+    names: list[str]
+    notes: list[str]
+
+
+@dataclasses.dataclass(frozen=True)
+class _CheckFrames:
+    """Checks consecutive frames in one scene, which is made from frame 0 of the animation."""
+
+    self_collision: bool
+    weld: bool
+    parts: bool
+    threads: int
+
+    def __call__(self, frames: Frames) -> Iterator[_Checked]:
+        names, triangles, first, positions = frames.open()
+        scene = Scene(contacts="penetration", threads=self.threads)
+        notes: list[str] = []
+        objects: list[tuple[int, Any, Any]] = []  # of which mesh, its object, its vertices
+        for i, (name, faces, xyz) in enumerate(zip(names, triangles, first)):
+            whole = Mesh(xyz, faces, name=name)
+            split = (
+                [
+                    (part.mesh, f"{name}.{k}", part.vertices)
+                    for k, part in enumerate(split_into_parts(whole, self.weld))
                 ]
-        for i, each, chosen in objects:
-            each.positions = positions[i][chosen]
-        checked.append(_check_frame(number, scene))
-    return CheckReport(source, names, checked, notes)
+                if self.parts
+                else [(whole, name, slice(None))]
+            )
+            objects += [
+                (i, _add(scene, label, mesh, self.self_collision, self.weld, notes), chosen)
+                for mesh, label, chosen in split
+            ]
+        for number, placed in enumerate(positions):
+            for i, each, chosen in objects:
+                each.positions = placed[i][chosen]
+            yield _Checked(_check_frame(number, scene), names, notes)
 
 
 def _add(scene: Scene, name: str, mesh: Mesh, self_collision: bool, weld: bool, notes: list[str]) -> Any:
@@ -203,160 +237,6 @@ def _check_frame(number: int, scene: Scene) -> FrameCheck:
                 else f"{scene[int(row[a])].name} with itself"
             )
     return FrameCheck(number, len(contacts), own, len(inside), deepest, worst)
-
-
-Frames = tuple[str, list[str], list[Any], Iterator[list[Any]], "int | None"]
-
-
-def _frames(animation: Any, faces: Any) -> Frames:
-    if isinstance(animation, dict):
-        if not isinstance(faces, dict) or animation.keys() != faces.keys():
-            raise Error("check: a dict of positions needs a dict of faces with the same names")
-        arrays = [_arrays.as_numpy(each, "positions") for each in animation.values()]
-        return _of_arrays("arrays", list(animation), arrays, list(faces.values()))
-    if isinstance(animation, Recording):
-        return _of_recording(animation)
-    if isinstance(animation, (str, os.PathLike)):
-        return _of_path(os.fspath(animation))
-    if (
-        isinstance(animation, (list, tuple))
-        and animation
-        and not hasattr(animation[0], "dtype")
-        and faces is None
-    ):
-        return _of_meshes("meshes", [as_mesh(each) for each in animation])
-    if faces is None:
-        raise Error("check: an array of positions needs faces")
-    return _of_arrays("array", ["mesh"], [_arrays.as_numpy(animation, "positions")], [faces])
-
-
-def _of_arrays(source: str, names: list[str], arrays: list[Any], faces: list[Any]) -> Frames:
-    for name, each in zip(names, arrays):
-        if each.ndim != 3 or each.shape[2] != 3:
-            raise Error(
-                f"check: the positions of {name} have the shape {each.shape}; it must be (frames, n, 3)"
-            )
-    counts = {len(each) for each in arrays}
-    if len(counts) > 1:
-        raise Error(f"check: the objects have {sorted(counts)} frames; they must have equally many")
-    total = counts.pop() if counts else 0
-    return source, names, faces, ([each[i] for each in arrays] for i in range(total)), total
-
-
-def _of_recording(recording: Recording) -> Frames:
-    places = range(len(recording.objects))
-    return (
-        recording.path,
-        [each.name for each in recording.objects],
-        [each.mesh.triangles for each in recording.objects],
-        ([recording.positions(i, each) for each in places] for i in range(len(recording))),
-        len(recording),
-    )
-
-
-def _of_meshes(source: str, meshes: list[Mesh]) -> Frames:
-    first = meshes[0]
-    for i, each in enumerate(meshes):
-        if not np.array_equal(each.triangles, first.triangles):
-            raise Error(
-                f"check: frame {i} of {source} has other triangles than frame 0; all frames need one topology"
-            )
-    return (
-        source,
-        [first.name or "mesh"],
-        [first.triangles],
-        ([each.positions] for each in meshes),
-        len(meshes),
-    )
-
-
-def _of_path(path: str) -> Frames:
-    lower = path.lower()
-    if lower.endswith((".h5", ".hdf5")):
-        return _of_recording(Recording(path))
-    if lower.endswith((".usd", ".usda", ".usdc", ".usdz")):
-        return _of_usd(path)
-    if lower.endswith(".abc"):
-        raise Error(f"{path}: Alembic is not read; export USD, or a sequence of OBJ files")
-    files = sorted(
-        glob.glob(path),
-        key=lambda name: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)],
-    )
-    if not files:
-        raise Error(f"{path}: no such file" + ("; quote the pattern" if "*" in path else ""))
-
-    def positions() -> Iterator[list[Any]]:
-        for i, name in enumerate(files):
-            mesh = as_mesh(name)
-            if not np.array_equal(mesh.triangles, first.triangles):
-                raise Error(
-                    f"{name}: frame {i} has other triangles than {files[0]}; all frames need one topology"
-                )
-            yield [mesh.positions]
-
-    first = as_mesh(files[0])
-    return path, [first.name], [first.triangles], positions(), len(files)
-
-
-def _of_usd(path: str) -> Frames:
-    try:
-        from pxr import Usd, UsdGeom
-    except ImportError:
-        raise Error(f"{path}: USD needs the package usd-core (pip install usd-core)") from None
-    stage = Usd.Stage.Open(path)
-    meshes = [UsdGeom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)]
-    if not meshes:
-        raise Error(f"{path}: the stage has no mesh")
-    topologies = [
-        _fans(
-            np.asarray(each.GetFaceVertexCountsAttr().Get()),
-            np.asarray(each.GetFaceVertexIndicesAttr().Get()),
-            each.GetOrientationAttr().Get() == "leftHanded",
-        )
-        for each in meshes
-    ]
-    codes = sorted(
-        {code for each in meshes for code in each.GetPointsAttr().GetTimeSamples()}
-        | {code for each in meshes for code in _transform_times(each)}
-    ) or [Usd.TimeCode.EarliestTime().GetValue()]
-
-    def frames() -> Iterator[list[Any]]:
-        kept = stage  # meshes are valid as long as their stage
-        for code in codes:
-            assert kept
-            cache = UsdGeom.XformCache(code)
-            placed = []
-            for each in meshes:
-                matrix = np.asarray(cache.GetLocalToWorldTransform(each.GetPrim()))
-                points = np.asarray(each.GetPointsAttr().Get(code), np.float64)
-                placed.append(points @ matrix[:3, :3] + matrix[3, :3])
-            yield placed
-
-    return path, [str(each.GetPath()) for each in meshes], topologies, frames(), len(codes)
-
-
-def _transform_times(mesh: Any) -> set[float]:
-    from pxr import UsdGeom
-
-    times: set[float] = set()
-    prim = mesh.GetPrim()
-    while prim and not prim.IsPseudoRoot():
-        if prim.IsA(UsdGeom.Xformable):
-            times |= set(UsdGeom.Xformable(prim).GetTimeSamples())
-        prim = prim.GetParent()
-    return times
-
-
-def _fans(counts: Any, corners: Any, flipped: bool) -> Any:
-    """Polygons as fans of triangles."""
-    triangles = []
-    start = 0
-    for count in counts.tolist():
-        face = corners[start : start + count]
-        triangles += [(face[0], face[i], face[i + 1]) for i in range(1, count - 1)]
-        start += count
-    made = np.array(triangles, np.int64).reshape(-1, 3)
-    return made[:, ::-1] if flipped else made
 
 
 __all__ = ["CheckReport", "FrameCheck", "check"]

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import os
 import pathlib
 import tempfile
-from typing import Any
+from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _program
-from ._core import Error
+from ._animation import Frames, Items
+from ._core import Error, Stop
+from ._frames import AnyExecutor, Progress, run
 
 
 class Experiment:
@@ -75,3 +78,41 @@ def experiment(name: str, output: str | os.PathLike[str] | None = None, **option
             arguments.append(",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value))
     _program.run("experiment", name, "--output", folder, "--quiet", *arguments)
     return Experiment(folder)
+
+
+def experiments(
+    name: str,
+    parameters: Sequence[Mapping[str, Any]],
+    executor: AnyExecutor | None = None,
+    output: str | os.PathLike[str] | None = None,
+    *,
+    progress: Progress = False,
+    stop: Stop | None = None,
+    **options: Any,
+) -> list[Experiment]:
+    """Runs an experiment with each of several sets of options, on an executor as `map_frames` takes it, and
+    returns the results in their order: `experiments("table1", [{"objects": 3}, {"objects": 6}], pool,
+    quick=True)`.
+
+    `options` are the same for all sets. Set i writes its tables to the folder i of `output`, or to a temporary
+    folder of the machine that runs it; the tables are in the results, too. Each run is a task. Counts are equal
+    to those of runs one after the other; times are not, because runs at the same time share memory and cores.
+    `progress` and `stop` are those of `map_frames`. Raises `Error`, which names the set, when a run fails.
+    """
+    folder = None if output is None else os.path.abspath(output)
+    sets = [
+        ({**options, **each}, None if folder is None else os.path.join(folder, str(i)))
+        for i, each in enumerate(parameters)
+    ]
+    frames = Items(sets, "parameter set")
+    return run("experiments", _Runs(name), frames, executor, progress=progress, stop=stop, chunk=1)
+
+
+@dataclasses.dataclass(frozen=True)
+class _Runs:
+    """Runs an experiment with each set of options."""
+
+    name: str
+
+    def __call__(self, frames: Frames) -> Iterator[Experiment]:
+        return (experiment(self.name, output, **options) for options, output in frames)
