@@ -26,7 +26,7 @@ if [ "${1:-}" = "--ci" ]; then
   packages+=(git libclang-rt-19-dev clang-format python3-clang-19 python3-h5py python3-jinja2 chromium chromium-headless-shell libopenmpi-dev libtrilinos-zoltan-dev)
 fi
 if [ "${1:-}" = "--ci" ] || [ "${1:-}" = "--python" ]; then
-  packages+=(python3-venv python3-dev)
+  packages+=(python3-venv python3-dev openmpi-bin)
 fi
 if [ "${1:-}" = "--bench" ]; then
   packages+=(git pkg-config libembree-dev libcgal-dev libfcl-dev libbullet-dev libode-dev)
