@@ -1,7 +1,7 @@
-// Times steps of a distributed scene, or of one scene with threads.
+// Times steps of a distributed scene, or of one scene with threads. Built with -DSUPPLE_BUILD_BENCHMARKS=ON.
 //
 //   mpirun -n RANKS supple_distributed_ranks WORKLOAD STEPS      one thread a rank
-//   supple_distributed_ranks WORKLOAD STEPS --scene THREADS      one `Scene`
+//   mpirun -n 1 --bind-to none supple_distributed_ranks WORKLOAD STEPS --scene THREADS      one `Scene`
 //
 // WORKLOAD is balls:N:FREQUENCY, N deforming balls of 20 FREQUENCY^2 triangles in a cube, dealt to the ranks
 // in turn; or sheet:SIDE, a waving sheet of 2 SIDE^2 triangles that is tested against itself and 16 balls,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "answers/detection.hpp"
@@ -95,13 +96,13 @@ class DistributedScene::Implementation {
   bool has_changed_ = true;  // objects were added or removed on this rank
   bool has_parts_ = false;   // on any rank
   Regions regions_;
-  double most_imbalance_ = 1;  // until space is divided anew
+  double most_imbalance_ = 1;  // above it, the next step divides space again
   LocalWorld local_;
   Detection detection_;
   StepSearch step_search_;
   Outbox outbox_;
   Inbox inbox_;
-  // Of a step.
+  // What a step computes.
   Question question_;
   Region region_;
   bool by_objects_ = false;  // whole objects are tested
@@ -109,7 +110,7 @@ class DistributedScene::Implementation {
   std::map<ObjectId, std::vector<int>> homes_of_;  // of `objects_`
   std::vector<ObjectPair> object_pairs_, tested_;  // of this rank; `tested_` also of an object with itself
   std::map<ObjectId, int> owners_;                 // the first homes of objects with clusters here
-  std::map<ClusterName, double> needed_;           // with their work
+  std::vector<std::pair<ClusterName, double>> needed_;  // ascending, with their work
   BroadPhase object_phase_{{.threads = 1}}, cluster_phase_{{.threads = 1}};
   FoundLists lists_;
   std::map<int, FoundLists> outgoing_;        // by rank

@@ -106,7 +106,7 @@ void DistributedScene::Implementation::gather_step_stats() {
   visit_all([&](double& value) { value = *time++; }, [&](std::uint64_t& value) { value = *count++; });
 }
 
-/// What the step took, from which the next one decides whether space is divided anew.
+/// Keeps what the step cost. The next step reads it to decide whether to divide space again.
 void DistributedScene::Implementation::end_step() {
   double work = 0;
   for (const auto& [name, of_cluster] : needed_) work += of_cluster;

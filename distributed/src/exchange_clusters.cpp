@@ -197,9 +197,10 @@ void DistributedScene::Implementation::find_object_pairs() {
   }
   for (const auto& [a, b] : tested_) {
     for (const ObjectId id : {a, b}) {
-      for (const int home : homes_of_.at(id)) needed_[{id, home, 0, all_clusters}] = 0;
+      for (const int home : homes_of_.at(id)) needed_.push_back({{id, home, 0, all_clusters}, 0});
     }
   }
+  sort_once(needed_);
   sort_once(tested_);
 }
 
@@ -209,19 +210,24 @@ void DistributedScene::Implementation::find_cluster_pairs() {
   if (by_objects_) return;
   std::vector<Aabb> boxes;
   for (const Unit& unit : clusters_) boxes.push_back(unit.box);
-  const auto need = [&](const Unit& a, const Unit& b) {
+  std::vector<double> work(clusters_.size(), 0);
+  const auto need = [&](std::size_t i, std::size_t j) {
+    const Unit &a = clusters_[i], &b = clusters_[j];
     ++stats.cluster_pairs;
     tested_.push_back({a.name.object, b.name.object});
-    const double work = 0.25 * (double{1} * a.triangles + b.triangles);
-    needed_[a.name] += work;
-    needed_[b.name] += work;
+    const double half = 0.25 * (double{1} * a.triangles + b.triangles);
+    work[i] += half;
+    work[j] += half;
   };
-  for (const Unit& unit : clusters_) {
-    if (unit.self_collision) need(unit, unit);
+  for (std::size_t i = 0; i < clusters_.size(); ++i) {
+    if (clusters_[i].self_collision) need(i, i);
   }
   for (const auto& [i, j] : cluster_phase_.find_object_pairs(boxes)) {
     const Unit &a = clusters_[i], &b = clusters_[j];
-    if (a.may_pair(b) && region_.meets(shared_box(a.box, b.box))) need(a, b);
+    if (a.may_pair(b) && region_.meets(shared_box(a.box, b.box))) need(i, j);
+  }
+  for (std::size_t i = 0; i < clusters_.size(); ++i) {
+    if (work[i] > 0) needed_.push_back({clusters_[i].name, work[i]});
   }
   sort_once(tested_);
 }

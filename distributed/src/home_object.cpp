@@ -10,6 +10,7 @@
 #include "geometry/vector.hpp"
 #include "octree/object_octree.hpp"
 #include "supple/option_descriptions.hpp"
+#include "world/checked_elements.hpp"
 
 namespace supple {
 namespace {
@@ -29,35 +30,11 @@ void check_ascending(std::span<const std::uint32_t> ids, std::size_t count, cons
   }
 }
 
-/// Faces, then edges and points of no triangle as in a world.
+/// Faces, then edges and points of no triangle, as in a world.
 std::vector<Triangle> checked_elements(const TrianglesView& triangles, std::size_t vertex_count,
                                        const ObjectOptions& options) {
-  std::vector<Triangle> elements;
-  elements.reserve(triangles.size());
-  const auto check_vertex = [&](std::int64_t v, const char* what, std::size_t i) {
-    if (v >= 0 && static_cast<std::size_t>(v) < vertex_count) return;
-    fail(options.name + ": " + what + " " + std::to_string(i) + " uses vertex " + std::to_string(v) +
-         ", but there are " + std::to_string(vertex_count) + " vertices, numbered from 0");
-  };
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const std::array<std::int64_t, 3> ids = triangles[t];
-    for (const std::int64_t v : ids) check_vertex(v, "triangle", t);
-    elements.push_back({static_cast<std::uint32_t>(ids[0]), static_cast<std::uint32_t>(ids[1]),
-                        static_cast<std::uint32_t>(ids[2])});
-  }
-  std::vector<Triangle> others;
-  for (std::size_t i = 0; i < options.edges.size(); ++i) {
-    const auto [v, w] = std::minmax(options.edges[i][0], options.edges[i][1]);
-    check_vertex(w, "edge", i);
-    if (v == w)
-      fail(options.name + ": both ends of edge " + std::to_string(i) + " are vertex " + std::to_string(v) +
-           "; list it in points");
-    others.push_back({v, w, w});
-  }
-  for (std::size_t i = 0; i < options.points.size(); ++i) {
-    check_vertex(options.points[i], "point", i);
-    others.push_back({options.points[i], options.points[i], options.points[i]});
-  }
+  std::vector<Triangle> elements = checked_triangles(options.name, vertex_count, triangles, Parallel(1));
+  std::vector<Triangle> others = checked_extra_elements(vertex_count, options);
   sort_once(others);
   elements.insert(elements.end(), others.begin(), others.end());
   return elements;

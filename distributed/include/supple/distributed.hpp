@@ -35,8 +35,8 @@ struct DistributedOptions {
   /// Objects are cut into clusters of at most this many triangles, which are sent where they may touch
   /// others.
   std::uint32_t cluster_triangles = 2048;
-  /// Space is divided anew when the work of the busiest rank exceeds the mean by this factor, and by a tenth
-  /// more than after the last division. At least 1.
+  /// The scene divides space again when the busiest rank has more than this factor of the mean work, and more
+  /// than 1.1 times the factor that it had after the last division. At least 1.
   double max_imbalance = 1.25;
 };
 
@@ -53,7 +53,7 @@ struct DistributedStats {
   std::uint64_t cluster_pairs = 0;                  ///< that this rank tests
   std::uint64_t triangles = 0;                      ///< that this rank needs for its pairs
   double imbalance = 1;                             ///< work of the busiest rank by the mean
-  bool divided = false;                             ///< space was divided anew
+  bool divided = false;                             ///< the call divided space again
 };
 
 /// One scene over all ranks of a communicator: the contacts of `Scene::detect`, to the byte, for objects that
@@ -115,7 +115,7 @@ class DistributedScene {
 
   int rank() const;
   int rank_count() const;
-  /// Of this rank.
+  /// What this rank did in the last collective call.
   const DistributedStats& stats() const;
 
  private:
