@@ -7,15 +7,6 @@
 #include "supple/simulation_descriptions.hpp"
 #include "supple/version.hpp"
 
-namespace supple::python {
-
-void fail_value(const char* where, const char* key, nb::handle value, const std::string& wanted) {
-  throw Error(std::string(where) + ": " + key + " is " + nb::cast<std::string>(nb::repr(value)) +
-              "; it must be " + wanted);
-}
-
-}  // namespace supple::python
-
 NB_MODULE(_core, module) {
   using namespace supple::python;
   namespace nb = nanobind;

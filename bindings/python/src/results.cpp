@@ -8,8 +8,8 @@ namespace supple::python {
 namespace {
 
 /// The lists of groups, which `for_each_list` leaves out because they follow from the records.
-template <class Visit>
-void visit_other_lists(const DetectResult& found, const Visit& visit) {
+template <class Found, class Visit>
+void visit_other_lists(Found& found, const Visit& visit) {
   visit("groups", found.groups);
   visit("continuous_groups", found.continuous_groups);
   visit("proximity_groups", found.proximity_groups);
@@ -24,8 +24,8 @@ void visit_other_lists(const DetectResult& found, const Visit& visit) {
 }
 
 /// Calls `visit(name, list)` for all lists of a result.
-template <class Visit>
-void visit_lists(const DetectResult& found, const Visit& visit) {
+template <class Found, class Visit>
+void visit_lists(Found& found, const Visit& visit) {
   for_each_list([&](const auto& list, auto member) { visit(list.name, member(found)); });
   visit_other_lists(found, visit);
 }
@@ -41,6 +41,17 @@ nb::object table_of(const std::shared_ptr<Lists>& lists, const DetectResult& fou
 }
 
 }  // namespace
+
+std::unique_ptr<Result> copy_of(const DetectResult& found) {
+  const auto memory = std::make_shared<std::vector<std::shared_ptr<const void>>>();
+  auto copy = std::make_unique<Result>(Result{found, std::make_shared<Lists>(Lists{nullptr, memory})});
+  visit_lists(copy->found, [&]<class Row>(const char*, std::span<const Row>& rows) {
+    const auto list = std::make_shared<const std::vector<Row>>(rows.begin(), rows.end());
+    memory->push_back(list);
+    rows = *list;
+  });
+  return copy;
+}
 
 void bind_results(nb::module_& module) {
   nb::class_<Result>(module, "Result")

@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "options.hpp"
 #include "records.hpp"
+#include "shared_calls.hpp"
 #include "supple/difference_descriptions.hpp"
 
 namespace supple::python {
@@ -18,23 +19,6 @@ namespace {
 using Alone = CallGuard::Alone;
 using Reading = CallGuard::Reading;
 using Together = CallGuard::Together;
-
-ObjectOptions object_options_of(const nb::dict& keywords,
-                                const std::optional<List<std::uint32_t>>& same_vertex,
-                                const std::optional<Matrix<std::uint32_t, 2>>& edges,
-                                const std::optional<List<std::uint32_t>>& points) {
-  ObjectOptions options;
-  set_options(options, keywords, "add");
-  if (same_vertex) options.same_vertex.assign(same_vertex->data(), same_vertex->data() + same_vertex->size());
-  if (points) options.points.assign(points->data(), points->data() + points->size());
-  for (std::size_t i = 0; edges && i < edges->shape(0); ++i)
-    options.edges.push_back({edges->data()[2 * i], edges->data()[2 * i + 1]});
-  return options;
-}
-
-nb::object safe_step(const SafeStep& step) {
-  return nb::make_tuple(step.step, to_table(step.limit));
-}
 
 /// The vertices of both sides of each record, (n, 2, 3): an element with fewer vertices repeats its first
 /// one.
@@ -98,63 +82,6 @@ nb::object vertices_of_records(const Scene& scene, const std::string& record,
   throw Error("vertices: a " + record + " has no two elements");
 }
 
-DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const char* where) {
-  DetectRequest request;
-  for (const auto [key, value] : keywords) {
-    const auto keyword = nb::cast<std::string>(key);
-    if (keyword == "max_contacts") {
-      if (!value.is_none() && !nb::try_cast(value, request.max_contacts))
-        fail_value(where, "max_contacts", value, "None or a whole number from 0 on");
-      continue;
-    }
-    if (!set_option(options, keyword, value, where)) {
-      throw nb::type_error(
-          (std::string(where) + ": there is no option '" + keyword +
-           "'; the options are contacts, those of continuous contacts (supple.options"
-           "('ImpactOptions')), proximity_listing, element_kinds, continuous_listing, manifolds, "
-           "depths and max_contacts")
-              .c_str());
-    }
-    if (keyword == "contacts")
-      request.contacts = options.contacts;
-    else if (keyword == "proximity_listing")
-      request.proximity_listing = options.proximity_listing;
-    else if (keyword == "element_kinds")
-      request.element_kinds = options.element_kinds;
-    else if (keyword == "continuous_listing")
-      request.continuous_listing = options.continuous_listing;
-    else if (keyword == "manifolds")
-      request.manifolds = options.manifolds;
-    else if (keyword == "depths")
-      request.depths = options.depths;
-    else if (ImpactOptions impact; keyword == "impact" || set_option(impact, keyword, value, where))
-      request.impact = options.impact;
-    else
-      throw nb::type_error(
-          (std::string(where) + ": '" + keyword + "' is fixed when the scene is made").c_str());
-  }
-  return request;
-}
-
-PairFilter filter_of(nb::object function) {
-  if (function.is_none()) return {};
-  // The last copy may be destroyed without the GIL.
-  auto* const held = new nb::object(std::move(function));
-  const std::shared_ptr<nb::object> shared(held, [](nb::object* object) {
-    nb::gil_scoped_acquire acquire;
-    delete object;
-  });
-  return [shared](ObjectId a, ObjectId b) {
-    nb::gil_scoped_acquire acquire;
-    const nb::object answer = (*shared)(a, b);
-    bool accepts = false;
-    if (!nb::try_cast(answer, accepts)) {
-      throw nb::type_error("the pair filter must return True or False");
-    }
-    return accepts;
-  };
-}
-
 SceneCore::SceneCore(const nb::dict& keywords) {
   SceneOptions options;
   set_options(options, keywords, "Scene");
@@ -213,6 +140,7 @@ void bind_scene(nb::module_& module) {
   nb::class_<SceneCore> scene(module, "Scene");
   const auto setter = [&](const char* name, auto set) { scene.def(name, set); };
   scene.def(nb::init<nb::dict>());
+  bind_shared_calls(scene);
   scene.def(
       "add",
       [](SceneCore& core, const Array& positions, const Array& triangles, const nb::dict& options,
@@ -227,16 +155,6 @@ void bind_scene(nb::module_& module) {
         return core.scene().add(xyz, faces, object);
       },
       nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg().none());
-  setter("remove", [](SceneCore& core, ObjectId id) {
-    const Alone alone(core.guard());
-    core.scene().remove(id);
-    core.state().shared.erase(id);
-  });
-  setter("set_positions", [](SceneCore& core, ObjectId id, const Array& positions) {
-    const Alone alone(core.guard());
-    core.scene().set_positions(id, positions_of(positions));
-    core.state().shared.erase(id);
-  });
   setter("set_vertices",
          [](SceneCore& core, ObjectId id, const List<std::uint32_t>& vertices, const Array& positions) {
            const Alone alone(core.guard());
@@ -246,11 +164,6 @@ void bind_scene(nb::module_& module) {
     const Alone alone(core.guard());
     core.scene().share_positions(id, positions_of(positions));
     core.state().shared[id] = std::move(array);
-  });
-  setter("set_motion", [](SceneCore& core, ObjectId id, const Array& from, const Array& to) {
-    const Alone alone(core.guard());
-    core.scene().set_motion(id, positions_of(from), positions_of(to));
-    core.state().shared.erase(id);
   });
   setter("translate", [](SceneCore& core, ObjectId id, double x, double y, double z) {
     const Alone alone(core.guard());
@@ -266,61 +179,8 @@ void bind_scene(nb::module_& module) {
     const Alone alone(core.guard());
     core.scene().set_transform(id, transform);
   });
-  setter("set_static", [](SceneCore& core, ObjectId id, bool value) {
-    const Alone alone(core.guard());
-    core.scene().set_static(id, value);
-  });
-  setter("set_group", [](SceneCore& core, ObjectId id, std::uint32_t group, std::uint32_t mask) {
-    const Alone alone(core.guard());
-    core.scene().set_group(id, group, mask);
-  });
-  setter("set_margin", [](SceneCore& core, ObjectId id, double margin) {
-    const Alone alone(core.guard());
-    core.scene().set_margin(id, margin);
-  });
-  setter("set_min_separation", [](SceneCore& core, ObjectId id, double separation) {
-    const Alone alone(core.guard());
-    core.scene().set_min_separation(id, separation);
-  });
-  setter("set_self_collision", [](SceneCore& core, ObjectId id, bool enabled) {
-    const Alone alone(core.guard());
-    core.scene().set_self_collision(id, enabled);
-  });
-  setter("set_vertex_groups", [](SceneCore& core, ObjectId id, const List<std::uint32_t>& groups,
-                                 const List<std::uint32_t>& masks) {
-    const Alone alone(core.guard());
-    core.scene().set_vertex_groups(id, span_of(groups), span_of(masks));
-  });
-  scene.def(
-      "set_pair_filter",
-      [](SceneCore& core, nb::object function) {
-        const Alone alone(core.guard());
-        core.scene().set_pair_filter(filter_of(std::move(function)));
-      },
-      nb::arg().none());
   scene.def("detect", &SceneCore::detect, nb::arg(), nb::arg().none());
   scene.def("search", &SceneCore::search, nb::arg(), nb::arg().none(), nb::arg().none());
-  scene.def("earliest_impact", [](SceneCore& core) {
-    const Alone alone(core.guard());
-    return to_table([&] {
-      const WithoutGil without_gil;
-      return core.scene().earliest_impact();
-    }());
-  });
-  scene.def("max_step", [](SceneCore& core) {
-    const Alone alone(core.guard());
-    return safe_step([&] {
-      const WithoutGil without_gil;
-      return core.scene().max_step();
-    }());
-  });
-  scene.def("collision_free_step", [](SceneCore& core, double keep) {
-    const Alone alone(core.guard());
-    return safe_step([&] {
-      const WithoutGil without_gil;
-      return core.scene().collision_free_step({keep});
-    }());
-  });
   scene.def("collision_free_steps", [](SceneCore& core, double keep) {
     const Alone alone(core.guard());
     const auto steps = [&] {

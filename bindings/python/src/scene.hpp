@@ -64,6 +64,8 @@ class SceneCore {
   Scene& scene() { return state_->scene; }
   SceneState& state() { return *state_; }
   CallGuard& guard() { return state_->guard; }
+  /// The object no longer reads an array in place.
+  void forget_shared(ObjectId id) { state_->shared.erase(id); }
   std::unique_ptr<Result> detect(const nb::dict& request, Stop* stop);
   nb::object search(const nb::dict& request, nb::object only, Stop* stop);
 
@@ -77,6 +79,15 @@ nb::object vertices_of_records(const Scene& scene, const std::string& record, co
 DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const char* where);
 /// A filter that calls a function of Python, or none.
 PairFilter filter_of(nb::object function);
+/// The options of an object from keywords and arrays.
+ObjectOptions object_options_of(const nb::dict& keywords,
+                                const std::optional<List<std::uint32_t>>& same_vertex,
+                                const std::optional<Matrix<std::uint32_t, 2>>& edges,
+                                const std::optional<List<std::uint32_t>>& points);
+/// The step and its limit.
+nb::object tuple_of(const SafeStep& step);
+/// A result whose lists are copies.
+std::unique_ptr<Result> copy_of(const DetectResult& found);
 
 void bind_scene(nb::module_& module);
 void bind_results(nb::module_& module);

@@ -221,6 +221,23 @@ def arrays_of(mesh: Any, faces: Any = None) -> tuple[Any, Any, str, Any, Any]:
     )
 
 
+def arrays_of_object(
+    mesh: Any, triangles: Any, edges: Any, points: Any, options: dict[str, Any]
+) -> tuple[Any, Any, dict[str, Any], Any, Any]:
+    """What the compiled modules take of an object: positions, which are converted by the caller, triangles,
+    options, edges and points."""
+    if triangles is None and isinstance(mesh, np.ndarray) and (edges is not None or points is not None):
+        triangles = ()  # rods and particles alone
+    xyz, faces, name, own_edges, own_points = arrays_of(mesh, triangles)
+    return (
+        xyz,
+        _arrays.triangles(faces),
+        _arrays.keywords({"name": name, **options}),
+        _arrays.ids(own_edges if edges is None else edges, "edges", 2),
+        _arrays.ids(own_points if points is None else points, "points"),
+    )
+
+
 def _load(path: str) -> Any:
     if path.lower().endswith(OWN_FORMATS):
         return load_mesh(path)

@@ -28,102 +28,34 @@ def rigid_transform(
     return matrix
 
 
-class Object:
-    """An object of a scene. `index` is what the results call it; it counts as this number in comparisons."""
+class Handle:
+    """What objects of a scene and of a distributed scene share."""
 
     __slots__ = ("_scene", "_id")
 
-    def __init__(self, scene: Scene, identifier: Any) -> None:
+    def __init__(self, scene: Any, identifier: Any) -> None:
         self._scene = scene
         self._id = identifier
 
     @property
     def index(self) -> int:
-        """The number of the object in `object_a` and `object_b`. A scene uses the number of a removed object
-        again."""
+        """The number of the object in `object_a` and `object_b`."""
         return int(self._id.index)
 
     @property
     def generation(self) -> int:
-        """How often the scene used this number before."""
+        """How many objects had this number before."""
         return int(self._id.generation)
-
-    @property
-    def name(self) -> str:
-        """The name in messages and results."""
-        return str(self._scene._core.name(self._id))
-
-    @property
-    def vertex_count(self) -> int:
-        """The number of vertices."""
-        return int(self._scene._core.vertex_count(self._id))
-
-    @property
-    def triangle_count(self) -> int:
-        """The number of triangles."""
-        return int(self._scene._core.triangle_count(self._id))
-
-    @property
-    def positions(self) -> npt.NDArray[np.float64]:
-        """The positions that the exact tests use, (n, 3), as a copy. Set it to move the object."""
-        return self._scene._core.positions(self._id)
-
-    @positions.setter
-    def positions(self, value: Any) -> None:
-        self._scene._core.set_positions(self._id, _arrays.positions(value))
-
-    @property
-    def triangles(self) -> npt.NDArray[np.uint32]:
-        """The vertex ids of each triangle, (m, 3), as a copy."""
-        return self._scene._core.triangles(self._id)
 
     @contract("Scene::set_positions")
     def set_positions(self, positions: Any) -> None:
-        self.positions = positions
-
-    @contract("Scene::set_vertices")
-    def set_vertices(self, vertices: Any, positions: Any) -> None:
-        self._scene._core.set_vertices(
-            self._id, _arrays.ids(vertices, "vertices"), _arrays.positions(positions)
-        )
-
-    @contract(
-        "Scene::share_positions",
-        """The array stays in use until the object gets other positions or is
-removed. It must be an array whose memory the scene can read: an array that had to be copied is an error.""",
-    )
-    def share_positions(self, positions: Any) -> None:
-        array = _arrays.positions(positions)
-        if (
-            array is not positions
-            and not np.may_share_memory(array, _arrays.as_numpy(positions, "positions"))
-            and array.size
-        ):
-            raise Error(
-                "these positions cannot be shared, because they are converted; give an array of float32 or float64"
-            )
-        self._scene._core.share_positions(self._id, array, array)
+        self._scene._core.set_positions(self._id, _arrays.positions(positions))
 
     @contract("Scene::set_motion")
     def set_motion(self, start: Any, end: Any) -> None:
         self._scene._core.set_motion(
             self._id, _arrays.positions(start, "start"), _arrays.positions(end, "end")
         )
-
-    @contract("Scene::translate")
-    def translate(self, offset: Any) -> None:
-        self._scene._core.translate(self._id, *_arrays.doubles(offset, "the offset", 3).tolist())
-
-    @contract(
-        "Scene::set_transform",
-        """`transform` is a (4, 4) or (3, 4) matrix: the rotation in the first three
-columns, the translation in the last one. `supple.rigid_transform` makes that of a quaternion.""",
-    )
-    def set_transform(self, transform: Any) -> None:
-        matrix = _arrays.as_numpy(transform, "the transform")
-        if matrix.shape == (4, 4) and not np.array_equal(matrix[3], (0, 0, 0, 1)):
-            raise Error(f"the last row of the transform is {matrix[3].tolist()}; it must be 0, 0, 0, 1")
-        self._scene._core.set_transform(self._id, _arrays.doubles(matrix, "the transform", -1, 4))
 
     @contract("Scene::set_vertex_groups")
     def set_vertex_groups(self, groups: Any, masks: Any) -> None:
@@ -159,7 +91,7 @@ columns, the translation in the last one. `supple.rigid_transform` makes that of
         return self.index
 
     def __eq__(self, other: object) -> bool:
-        if isinstance(other, Object):
+        if isinstance(other, Handle):
             return self._scene is other._scene and (self.index, self.generation) == (
                 other.index,
                 other.generation,
@@ -168,6 +100,81 @@ columns, the translation in the last one. `supple.rigid_transform` makes that of
 
     def __hash__(self) -> int:
         return hash(self.index)
+
+
+class Object(Handle):
+    """An object of a scene. `index` is what the results call it; it counts as this number in comparisons.
+    A scene uses the number of a removed object again."""
+
+    __slots__ = ()
+    _scene: Scene
+
+    @property
+    def name(self) -> str:
+        """The name in messages and results."""
+        return str(self._scene._core.name(self._id))
+
+    @property
+    def vertex_count(self) -> int:
+        """The number of vertices."""
+        return int(self._scene._core.vertex_count(self._id))
+
+    @property
+    def triangle_count(self) -> int:
+        """The number of triangles."""
+        return int(self._scene._core.triangle_count(self._id))
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        """The positions that the exact tests use, (n, 3), as a copy. Set it to move the object."""
+        return self._scene._core.positions(self._id)
+
+    @positions.setter
+    def positions(self, value: Any) -> None:
+        self._scene._core.set_positions(self._id, _arrays.positions(value))
+
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]:
+        """The vertex ids of each triangle, (m, 3), as a copy."""
+        return self._scene._core.triangles(self._id)
+
+    @contract("Scene::set_vertices")
+    def set_vertices(self, vertices: Any, positions: Any) -> None:
+        self._scene._core.set_vertices(
+            self._id, _arrays.ids(vertices, "vertices"), _arrays.positions(positions)
+        )
+
+    @contract(
+        "Scene::share_positions",
+        """The array stays in use until the object gets other positions or is
+removed. It must be an array whose memory the scene can read: an array that had to be copied is an error.""",
+    )
+    def share_positions(self, positions: Any) -> None:
+        array = _arrays.positions(positions)
+        if (
+            array is not positions
+            and not np.may_share_memory(array, _arrays.as_numpy(positions, "positions"))
+            and array.size
+        ):
+            raise Error(
+                "these positions cannot be shared, because they are converted; give an array of float32 or float64"
+            )
+        self._scene._core.share_positions(self._id, array, array)
+
+    @contract("Scene::translate")
+    def translate(self, offset: Any) -> None:
+        self._scene._core.translate(self._id, *_arrays.doubles(offset, "the offset", 3).tolist())
+
+    @contract(
+        "Scene::set_transform",
+        """`transform` is a (4, 4) or (3, 4) matrix: the rotation in the first three
+columns, the translation in the last one. `supple.rigid_transform` makes that of a quaternion.""",
+    )
+    def set_transform(self, transform: Any) -> None:
+        matrix = _arrays.as_numpy(transform, "the transform")
+        if matrix.shape == (4, 4) and not np.array_equal(matrix[3], (0, 0, 0, 1)):
+            raise Error(f"the last row of the transform is {matrix[3].tolist()}; it must be 0, 0, 0, 1")
+        self._scene._core.set_transform(self._id, _arrays.doubles(matrix, "the transform", -1, 4))
 
     def __repr__(self) -> str:
         if not self._scene._core.contains(self._id):

@@ -11,7 +11,7 @@ import numpy as np
 from . import _arrays, _core
 from ._contracts import contract
 from ._core import Error, Stop
-from ._meshes import arrays_of
+from ._meshes import arrays_of_object
 from ._object import Object
 from ._queries import Queries
 from ._result import Result, SavedResult
@@ -105,19 +105,10 @@ class Scene(Queries):
         strides that they have. Copied once are arrays that are not aligned, not in the byte order of the
         machine, or not of float32, float64, int32, int64, uint16 or uint32.
         """
-        if triangles is None and isinstance(mesh, np.ndarray) and (edges is not None or points is not None):
-            triangles = ()  # rods and particles alone
-        xyz, faces, name, own_edges, own_points = arrays_of(mesh, triangles)
-        options.setdefault("name", name)
-        options = _arrays.keywords(options)
-        identifier = self._core.add(
-            _arrays.positions(xyz),
-            _arrays.triangles(faces),
-            options,
-            None if same_vertex is None else _arrays.ids(same_vertex, "same_vertex"),
-            _arrays.ids(own_edges if edges is None else edges, "edges", 2),
-            _arrays.ids(own_points if points is None else points, "points"),
-        )
+        xyz, faces, options, edges, points = arrays_of_object(mesh, triangles, edges, points, options)
+        if same_vertex is not None:
+            same_vertex = _arrays.ids(same_vertex, "same_vertex")
+        identifier = self._core.add(_arrays.positions(xyz), faces, options, same_vertex, edges, points)
         added = Object(self, identifier)
         self._objects[added.index] = added
         return added

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include "arrays.hpp"
+#include "calls.hpp"
+#include "records.hpp"
+#include "scene.hpp"
+
+namespace supple::python {
+
+/// Binds the calls that a scene and a distributed scene share. `core.scene()` is one of them.
+template <class Core>
+void bind_shared_calls(nb::class_<Core>& scene) {
+  using Alone = CallGuard::Alone;
+  const auto setter = [&](const char* name, auto set) { scene.def(name, set); };
+  setter("remove", [](Core& core, ObjectId id) {
+    const Alone alone(core.guard());
+    core.scene().remove(id);
+    core.forget_shared(id);
+  });
+  setter("set_positions", [](Core& core, ObjectId id, const Array& positions) {
+    const Alone alone(core.guard());
+    core.scene().set_positions(id, positions_of(positions));
+    core.forget_shared(id);
+  });
+  setter("set_motion", [](Core& core, ObjectId id, const Array& from, const Array& to) {
+    const Alone alone(core.guard());
+    core.scene().set_motion(id, positions_of(from), positions_of(to));
+    core.forget_shared(id);
+  });
+  setter("set_static", [](Core& core, ObjectId id, bool value) {
+    const Alone alone(core.guard());
+    core.scene().set_static(id, value);
+  });
+  setter("set_group", [](Core& core, ObjectId id, std::uint32_t group, std::uint32_t mask) {
+    const Alone alone(core.guard());
+    core.scene().set_group(id, group, mask);
+  });
+  setter("set_margin", [](Core& core, ObjectId id, double margin) {
+    const Alone alone(core.guard());
+    core.scene().set_margin(id, margin);
+  });
+  setter("set_min_separation", [](Core& core, ObjectId id, double separation) {
+    const Alone alone(core.guard());
+    core.scene().set_min_separation(id, separation);
+  });
+  setter("set_self_collision", [](Core& core, ObjectId id, bool enabled) {
+    const Alone alone(core.guard());
+    core.scene().set_self_collision(id, enabled);
+  });
+  setter("set_vertex_groups",
+         [](Core& core, ObjectId id, const List<std::uint32_t>& groups, const List<std::uint32_t>& masks) {
+           const Alone alone(core.guard());
+           core.scene().set_vertex_groups(id, span_of(groups), span_of(masks));
+         });
+  scene.def(
+      "set_pair_filter",
+      [](Core& core, nb::object function) {
+        const Alone alone(core.guard());
+        core.scene().set_pair_filter(filter_of(std::move(function)));
+      },
+      nb::arg().none());
+  scene.def("earliest_impact", [](Core& core) {
+    const Alone alone(core.guard());
+    return to_table([&] {
+      const WithoutGil without_gil;
+      return core.scene().earliest_impact();
+    }());
+  });
+  scene.def("max_step", [](Core& core) {
+    const Alone alone(core.guard());
+    return tuple_of([&] {
+      const WithoutGil without_gil;
+      return core.scene().max_step();
+    }());
+  });
+  scene.def("collision_free_step", [](Core& core, double keep) {
+    const Alone alone(core.guard());
+    return tuple_of([&] {
+      const WithoutGil without_gil;
+      return core.scene().collision_free_step({keep});
+    }());
+  });
+}
+
+}  // namespace supple::python
