@@ -68,7 +68,7 @@ void Communicator::agree(bool failed, const std::string& error) const {
   MPI_Bcast(&length, 1, MPI_INT, first, handle_);
   message.resize(static_cast<std::size_t>(length));
   MPI_Bcast(message.data(), length, MPI_CHAR, first, handle_);
-  fail("rank " + std::to_string(first) + ": " + message);
+  throw SharedError("rank " + std::to_string(first) + ": " + message);
 }
 
 void Communicator::exchange(const Outbox& outbox, Inbox& inbox) {

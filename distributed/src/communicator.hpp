@@ -5,15 +5,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "bytes.hpp"
+#include "supple/error.hpp"
 
 namespace supple {
+
+/// An error that all ranks throw.
+class SharedError : public Error {
+ public:
+  using Error::Error;
+};
 
 /// Messages to other ranks, or to this one.
 class Outbox {
@@ -65,12 +71,15 @@ class Communicator {
   int ranks_of_machine() const;
 
   /// Collective: runs `work` on each rank. When it throws on any of them, all throw the error of the lowest.
+  /// `work` may call it again, and so end on all ranks where it fails on one.
   template <class Work>
   void together(const Work& work) {
     std::string error;
     bool failed = false;
     try {
       work();
+    } catch (const SharedError&) {
+      throw;
     } catch (const std::exception& e) {
       failed = true;
       error = e.what();

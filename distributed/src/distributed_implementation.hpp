@@ -17,6 +17,8 @@
 #include "scene/pair_cache.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/distributed.hpp"
+#include "supple/option_descriptions.hpp"
+#include "supple/queries.hpp"
 
 namespace supple {
 
@@ -47,20 +49,44 @@ class DistributedScene::Implementation {
            const ObjectPart* part, const ObjectOptions& object_options);
   void remove(ObjectId id);
   HomeObject& home(ObjectId id, const char* call);
+  /// Changes what the ranks with clusters of the object know of it: `change(object)`.
+  template <class Change>
+  void change(ObjectId id, const char* call, const Change& change) {
+    HomeObject& object = home(id, call);
+    change(object);
+    object.addition = additions_++;
+    has_changed_ = true;
+  }
+  void change_option(ObjectId id, const char* call, const auto& member, const auto& value) {
+    change(id, call, [&](HomeObject& object) {
+      ObjectOptions options_now = object.options;
+      options_now.*member = value;
+      check(options_now, call);
+      object.options = options_now;
+    });
+  }
   const DetectResult& detect(const DetectRequest& request);
   std::optional<ContinuousContact> earliest_impact();
+  SafeStep collision_free_step(const StepOptions& step);
+  std::vector<ProximityPair> distances(double max_distance);
+  void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
+               const ClosestOptions& closest_options);
 
   Communicator ranks;
   const DistributedOptions options;
+  PairFilter filter;
   DistributedStats stats;
 
  private:
   World& world() { return local_.world(); }
-  void prepare();
+  void prepare(bool by_objects = false, double growth = 0);
+  void exchange_units();
+  void fetch_clusters();
   void agree_on_objects();
   void divide_space();
   void send_units();
   void send_unit(const Unit& unit, const std::vector<int>& homes);
+  bool accepts(const Unit& a, const Unit& b);
   bool is_tested(ObjectId a, ObjectId b) const;
   void read_units();
   void find_object_pairs();
@@ -68,6 +94,9 @@ class DistributedScene::Implementation {
   void request_clusters();
   void answer_requests();
   void take_clusters();
+
+  std::optional<ContinuousContact> first_of_all(const std::optional<ContinuousContact>& own);
+  void send_lists();
 
   ObjectId user(ObjectId local) const { return local_.user_object(local.index); }
   Vec3d lower_corner(ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
@@ -78,6 +107,12 @@ class DistributedScene::Implementation {
   int rank_of_pair(ObjectId a, ObjectId b) const;
   FoundLists& lists_of(ObjectId a);
   void send_pair(PairList list, ObjectId p, ObjectId q);
+  struct PointQuery;
+  struct Candidate;
+  std::vector<PointQuery> query_points(std::span<const Vec3d> points, const QueryFilter& seen);
+  void need_clusters_near(std::vector<PointQuery>& points, const QueryFilter& seen);
+  void send_nearest(std::span<const PointQuery> points, const ClosestOptions& closest_options);
+  static ClosestPoint nearest_of(std::span<const Candidate> candidates, const Vec3d& point);
   template <class Record, class Add>
   void send_groups(std::span<const ContactGroup> groups, std::span<const Record> records, PairList events,
                    const Add& add);
@@ -106,6 +141,8 @@ class DistributedScene::Implementation {
   Question question_;
   Region region_;
   bool by_objects_ = false;  // whole objects are tested
+  double growth_ = 0;        // of boxes, for a search of distances
+  std::map<ObjectPair, bool> filtered_;  // what the filter said
   std::vector<Unit> objects_, clusters_;
   std::map<ObjectId, std::vector<int>> homes_of_;  // of `objects_`
   std::vector<ObjectPair> object_pairs_, tested_;  // of this rank; `tested_` also of an object with itself

@@ -128,18 +128,14 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
     if (question_.is_continuous() && question_.impact.listing == ContinuousListing::first)
       refuse("ContinuousListing::first is not supported");
   });
-  prepare();
+  prepare(question_.has_penetration());
   result_ = {};
   ranks.together([&] {
     detection_.run(question_, request.max_contacts, {}, result_.stats);
     send_results();
   });
-  ranks.exchange(outbox_, inbox_);
-  ranks.together([&] {
-    inbox_.for_each([&](Reader& from, int) { lists_.append(from); });
-    lists_.sort();
-    lists_.list(result_);
-  });
+  send_lists();
+  ranks.together([&] { lists_.list(result_); });
   for (std::size_t list = 0; list < pair_lists; ++list) events_[list].update(lists_.pairs[list]);
   result_.volume_events = events_[0].events();
   result_.contact_events = events_[1].events();
@@ -149,34 +145,6 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   gather_step_stats();
   end_step();
   return result_;
-}
-
-std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impact() {
-  const SceneOptions& of = options.scene;
-  const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
-  question_ = {.contacts = ContactKinds::continuous, .impact = search};
-  prepare();
-  std::optional<ContinuousContact> first;
-  ranks.together([&] {
-    first = step_search_.earliest_impact(search);
-    if (first) first = named(*first);
-  });
-  std::vector<double> latest{first ? -first->toi : -2};
-  ranks.largest(latest);
-  const double earliest = -latest[0];
-  outbox_.clear();
-  if (first && first->toi == earliest) outbox_.to(0).put(*first);
-  ranks.exchange(outbox_, inbox_);
-  first.reset();
-  inbox_.for_each([&](Reader& from, int) {
-    const auto other = from.get<ContinuousContact>();
-    if (!first || is_before(other, *first)) first = other;
-  });
-  end_step();
-  if (earliest > 1) return std::nullopt;
-  ContinuousContact found = first.value_or(ContinuousContact{});
-  MPI_Bcast(&found, sizeof found, MPI_BYTE, 0, ranks.handle());
-  return found;
 }
 
 DistributedScene::DistributedScene(MPI_Comm communicator, const DistributedOptions& options)
@@ -205,8 +173,44 @@ void DistributedScene::set_motion(ObjectId id, PositionsView from, PositionsView
 const DetectResult& DistributedScene::detect(const DetectRequest& request) {
   return implementation_->detect(request);
 }
+void DistributedScene::set_static(ObjectId id, bool is_static) {
+  implementation_->change_option(id, "set_static", &ObjectOptions::is_static, is_static);
+}
+void DistributedScene::set_group(ObjectId id, std::uint32_t group, std::uint32_t mask) {
+  implementation_->change(id, "set_group", [&](HomeObject& object) {
+    object.options.group = group;
+    object.options.mask = mask;
+  });
+}
+void DistributedScene::set_margin(ObjectId id, double margin) {
+  implementation_->change_option(id, "set_margin", &ObjectOptions::margin, margin);
+}
+void DistributedScene::set_min_separation(ObjectId id, double separation) {
+  implementation_->change_option(id, "set_min_separation", &ObjectOptions::min_separation, separation);
+}
+void DistributedScene::set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
+                                         std::span<const std::uint32_t> masks) {
+  implementation_->change(id, "set_vertex_groups",
+                          [&](HomeObject& object) { object.set_vertex_groups(groups, masks); });
+}
+void DistributedScene::set_self_collision(ObjectId id, bool enabled) {
+  implementation_->change_option(id, "set_self_collision", &ObjectOptions::self_collision, enabled);
+}
+void DistributedScene::set_pair_filter(PairFilter filter) {
+  implementation_->filter = std::move(filter);
+}
 std::optional<ContinuousContact> DistributedScene::earliest_impact() {
   return implementation_->earliest_impact();
+}
+SafeStep DistributedScene::collision_free_step(const StepOptions& options) {
+  return implementation_->collision_free_step(options);
+}
+std::vector<ProximityPair> DistributedScene::distances(double max_distance) {
+  return implementation_->distances(max_distance);
+}
+void DistributedScene::closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
+                               const ClosestOptions& options) {
+  implementation_->closest(points, results, options);
 }
 SafeStep DistributedScene::max_step() {
   const auto earliest = implementation_->earliest_impact();

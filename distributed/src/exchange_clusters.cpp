@@ -140,7 +140,7 @@ void DistributedScene::Implementation::send_units() {
   stats.clusters = 0;
   for (auto& [id, object] : homes_) {
     const ObjectOptions& of = object.options;
-    const double growth = growth_of(of, nullptr, question_);
+    const double growth = growth_ + (question_.safe_step ? 0 : growth_of(of, nullptr, question_));
     Unit unit{{id, ranks.rank(), object.addition, all_clusters},
               grown(object.box, growth),
               0,
@@ -153,7 +153,12 @@ void DistributedScene::Implementation::send_units() {
     for (std::uint32_t c = 0; c < object.clusters.size() && !by_objects_; ++c) {
       const Cluster& cluster = object.clusters[c];
       unit.name.cluster = c;
-      unit.box = grown(cluster.box, growth);
+      if (question_.safe_step) {
+        const VertexWays ways = object.ways_of(cluster);
+        unit.box = grown(cluster.box, growth_of(of, &ways, question_));
+      } else {
+        unit.box = grown(cluster.box, growth);
+      }
       unit.triangles = static_cast<std::uint32_t>(cluster.elements.size());
       send_unit(unit, {});
     }
@@ -176,6 +181,15 @@ void DistributedScene::Implementation::read_units() {
     std::sort(units->begin(), units->end(), [](const Unit& p, const Unit& q) { return p.name < q.name; });
 }
 
+/// Whether the pair filter lets the objects through; it is asked once for each pair.
+bool DistributedScene::Implementation::accepts(const Unit& a, const Unit& b) {
+  if (!filter || a.name.object == b.name.object) return true;
+  const auto [p, q] = std::minmax(a.name.object, b.name.object);
+  const auto [known, is_new] = filtered_.try_emplace({p, q}, false);
+  if (is_new) known->second = filter(p, q);
+  return known->second;
+}
+
 /// The pairs of objects of this rank. When whole objects are tested, it needs all their clusters.
 void DistributedScene::Implementation::find_object_pairs() {
   std::vector<Aabb> boxes;
@@ -183,9 +197,10 @@ void DistributedScene::Implementation::find_object_pairs() {
   // By the lower corner, so that one rank has each pair.
   const auto owns = [&](const Aabb& box) { return region_.contains(Vec3d{box.min.x, box.min.y, box.min.z}); };
   object_pairs_.clear();
+  filtered_.clear();
   for (const auto& [i, j] : object_phase_.find_object_pairs(boxes)) {
     const Unit &a = objects_[i], &b = objects_[j];
-    if (a.may_pair(b) && owns(shared_box(a.box, b.box)))
+    if (a.may_pair(b) && owns(shared_box(a.box, b.box)) && accepts(a, b))
       object_pairs_.push_back({a.name.object, b.name.object});
   }
   tested_.clear();
@@ -224,7 +239,7 @@ void DistributedScene::Implementation::find_cluster_pairs() {
   }
   for (const auto& [i, j] : cluster_phase_.find_object_pairs(boxes)) {
     const Unit &a = clusters_[i], &b = clusters_[j];
-    if (a.may_pair(b) && region_.meets(shared_box(a.box, b.box))) need(i, j);
+    if (a.may_pair(b) && region_.meets(shared_box(a.box, b.box)) && accepts(a, b)) need(i, j);
   }
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
     if (work[i] > 0) needed_.push_back({clusters_[i].name, work[i]});
@@ -306,10 +321,9 @@ bool DistributedScene::Implementation::is_tested(ObjectId a, ObjectId b) const {
   return std::binary_search(tested_.begin(), tested_.end(), ObjectPair{user(a), user(b)});
 }
 
-/// Brings all that this rank tests into its world.
-void DistributedScene::Implementation::prepare() {
+/// Brings the units of this step to the ranks whose regions they meet.
+void DistributedScene::Implementation::exchange_units() {
   ranks.bytes_sent = ranks.messages_sent = 0;
-  by_objects_ = question_.has_penetration();
   agree_on_objects();
   ranks.together([&] {
     for (auto& [id, object] : homes_) object.update_boxes(question_.shapes(), world().parallel);
@@ -332,12 +346,12 @@ void DistributedScene::Implementation::prepare() {
   divide_space();
   ranks.together([&] { send_units(); });
   ranks.exchange(outbox_, inbox_);
-  ranks.together([&] {
-    read_units();
-    find_object_pairs();
-    find_cluster_pairs();
-    request_clusters();
-  });
+  ranks.together([&] { read_units(); });
+}
+
+/// Brings the clusters that this rank needs into its world.
+void DistributedScene::Implementation::fetch_clusters() {
+  ranks.together([&] { request_clusters(); });
   ranks.exchange(outbox_, inbox_);
   ranks.together([&] { answer_requests(); });
   ranks.exchange(outbox_, inbox_);
@@ -351,6 +365,19 @@ void DistributedScene::Implementation::prepare() {
     world().set_filter([this](ObjectId a, ObjectId b) { return is_tested(a, b); });
     for (const ObjectId id : world().objects()) world().set_self_collision(id, is_tested(id, id));
   });
+}
+
+/// Brings all that this rank tests into its world: whole objects, or clusters. Boxes grow by `growth` besides
+/// what the question needs.
+void DistributedScene::Implementation::prepare(bool by_objects, double growth) {
+  by_objects_ = by_objects;
+  growth_ = growth;
+  exchange_units();
+  ranks.together([&] {
+    find_object_pairs();
+    find_cluster_pairs();
+  });
+  fetch_clusters();
 }
 
 }  // namespace supple

@@ -141,6 +141,17 @@ void HomeObject::set_motion(const PositionsView& from, const PositionsView& to) 
   ++version_;
 }
 
+void HomeObject::set_vertex_groups(std::span<const std::uint32_t> groups,
+                                   std::span<const std::uint32_t> masks) {
+  for (const std::size_t given : {groups.size(), masks.size()}) {
+    if (given == vertex_count_ || (groups.empty() && masks.empty())) continue;
+    fail("set_vertex_groups: " + std::to_string(given) + " numbers for " + options.name + ", which has " +
+         std::to_string(vertex_count_) + " vertices; give a group and a mask for each vertex");
+  }
+  groups_.assign(groups.begin(), groups.end());
+  masks_.assign(masks.begin(), masks.end());
+}
+
 bool HomeObject::is_finite_at(const SearchedShapes& shapes, std::uint32_t v) const {
   return is_finite(end_[v]) && (!shapes.moving || start_.size() == 0 || is_finite(start_[v]));
 }
@@ -217,12 +228,29 @@ void HomeObject::list_non_finite(const SearchedShapes& shapes, std::vector<NonFi
     vertices.push_back({id, user_vertex(v), is_finite(end_[v]) ? start_[v] : end_[v]});
 }
 
+VertexWays HomeObject::ways_of(const Cluster& cluster) const {
+  VertexWays ways;
+  for (const std::uint32_t v : cluster.vertices) {
+    const Vec3d end = end_[v], start = start_.size() != 0 ? start_[v] : end;
+    if (!is_finite(start) || !is_finite(end)) continue;
+    ways.longest = std::max(ways.longest, scaled_norm(end - start));
+    ways.largest_coordinate =
+        std::max({ways.largest_coordinate, largest_magnitude(start), largest_magnitude(end)});
+  }
+  return ways;
+}
+
 void HomeObject::write_topology(std::uint32_t cluster, Writer& to) const {
   const Cluster& written = clusters[cluster];
   to.put_all(written.elements);
   to.put_all(written.faces);
   to.put<std::uint64_t>(written.vertices.size());
   for (const std::uint32_t v : written.vertices) to.put(user_vertex(v));
+  for (const auto* const numbers : {&groups_, &masks_}) {
+    to.put<std::uint64_t>(numbers->empty() ? 0 : written.vertices.size());
+    for (std::size_t i = 0; i < written.vertices.size() && !numbers->empty(); ++i)
+      to.put((*numbers)[written.vertices[i]]);
+  }
 }
 
 void HomeObject::write_positions(std::uint32_t cluster, Writer& to) const {

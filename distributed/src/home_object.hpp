@@ -11,6 +11,7 @@
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/views.hpp"
+#include "world/object/vertex_ways.hpp"
 
 namespace supple {
 
@@ -49,10 +50,13 @@ class HomeObject {
 
   void set_positions(const PositionsView& positions);
   void set_motion(const PositionsView& from, const PositionsView& to);
+  void set_vertex_groups(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> masks);
   /// The boxes of all clusters, for a search of these shapes. O(n).
   void update_boxes(const SearchedShapes& shapes, const Parallel& parallel);
   /// The vertices that are not finite and that an element uses, as the user's numbers, ascending.
   void list_non_finite(const SearchedShapes& shapes, std::vector<NonFiniteVertex>& vertices) const;
+  /// How far the vertices of a cluster move, without the mean of their ways.
+  VertexWays ways_of(const Cluster& cluster) const;
 
   void write_topology(std::uint32_t cluster, Writer& to) const;
   void write_positions(std::uint32_t cluster, Writer& to) const;
@@ -77,6 +81,7 @@ class HomeObject {
 
   bool is_part_;
   std::vector<std::uint32_t> vertex_ids_;  // of a part
+  std::vector<std::uint32_t> groups_, masks_;  // of its vertices; empty without groups
   std::size_t vertex_count_;
   Coordinates start_, end_;  // `start_` is empty at rest
   std::uint64_t version_ = 1;

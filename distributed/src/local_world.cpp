@@ -116,6 +116,8 @@ void LocalWorld::read_cluster(const ClusterName& name, std::uint64_t version, bo
     cluster->elements = from.get_all<Triangle>();
     cluster->faces = from.get_all<std::uint32_t>();
     cluster->vertices = from.get_all<std::uint32_t>();
+    cluster->groups = from.get_all<std::uint32_t>();
+    cluster->masks = from.get_all<std::uint32_t>();
   }
   cluster->is_needed = true;
   cluster->version = version;
@@ -131,12 +133,12 @@ void LocalWorld::end(bool are_whole) {
     const bool is_used = std::any_of(object.clusters.begin(), object.clusters.end(),
                                      [](const GuestCluster& cluster) { return cluster.is_needed; });
     object.unused_steps = is_used ? 0 : object.unused_steps + 1;
-    if (is_used) {
-      place(object);
-      make_solid(object, are_whole);
-    } else if (object.unused_steps > kept_steps) {
+    if (object.unused_steps > kept_steps || (!is_used && object.slot == none)) {
       drop(object);
+      continue;
     }
+    place(object);
+    make_solid(object, is_used && are_whole);
   }
   if (!is_arranged_) arrange();
 }
@@ -264,7 +266,19 @@ ObjectId LocalWorld::add(GuestObject& object, const PositionsView& positions) {
   std::vector<Triangle> faces;
   faces.reserve(numbered.size());
   for (const auto& [number, corners] : numbered) faces.push_back(corners);
-  return world_.add(positions, faces, options, "");
+  const ObjectId local = world_.add(positions, faces, options, "");
+  if (std::any_of(object.clusters.begin(), object.clusters.end(),
+                  [](const GuestCluster& cluster) { return !cluster.groups.empty(); })) {
+    std::vector<std::uint32_t> groups(object.vertices.size(), ~std::uint32_t{0}), masks = groups;
+    for (const GuestCluster& cluster : object.clusters) {
+      for (std::size_t i = 0; i < cluster.groups.size(); ++i) {
+        groups[cluster.local[i]] = cluster.groups[i];
+        masks[cluster.local[i]] = cluster.masks[i];
+      }
+    }
+    world_.set_vertex_groups(local, groups, masks);
+  }
+  return local;
 }
 
 void LocalWorld::drop(GuestObject& object) {

@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,12 @@ class LocalWorld {
 
   World& world() { return world_; }
   std::uint64_t needed_triangles() const;
+  /// The object of the world; nothing when it has no cluster of it.
+  std::optional<ObjectId> local_object(ObjectId user) const {
+    const auto found = objects_.find(user);
+    if (found == objects_.end() || found->second.slot == none) return std::nullopt;
+    return world_.id_of(found->second.slot);
+  }
   // The user's numbers of objects, by slot, and of what belongs to them.
   ObjectId user_object(std::uint32_t slot) const { return by_slot_[slot]->id; }
   std::uint32_t user_vertex(std::uint32_t slot, std::uint32_t v) const { return by_slot_[slot]->vertices[v]; }
@@ -69,6 +76,7 @@ class LocalWorld {
     ClusterName name;
     std::vector<Triangle> elements;              ///< corners as indices into `vertices`
     std::vector<std::uint32_t> faces, vertices;  ///< the user's numbers
+    std::vector<std::uint32_t> groups, masks;    ///< of the vertices; empty without groups
     std::vector<std::uint32_t> local;            ///< the vertices in the object of the world
     std::uint64_t version = 0;
     bool is_needed = false, was_needed = false, is_new = true;

@@ -225,13 +225,24 @@ void DistributedScene::Implementation::send_results() {
     FoundLists& lists = outgoing_[options.results == ResultPlacement::gathered ? 0 : object.first_home];
     object.list_non_finite(question_.shapes(), lists.non_finite_vertices);
   }
+}
+
+/// Sends what this rank found to where the results are, and takes what is here.
+void DistributedScene::Implementation::send_lists() {
   outbox_.clear();
-  for (const auto& [rank, lists] : outgoing_) {
-    if (rank == ranks.rank() || lists.is_empty()) continue;
-    Writer to = outbox_.to(rank);
-    lists.write(to);
-  }
-  std::swap(lists_, outgoing_[ranks.rank()]);
+  ranks.together([&] {
+    for (const auto& [rank, lists] : outgoing_) {
+      if (rank == ranks.rank() || lists.is_empty()) continue;
+      Writer to = outbox_.to(rank);
+      lists.write(to);
+    }
+    std::swap(lists_, outgoing_[ranks.rank()]);
+  });
+  ranks.exchange(outbox_, inbox_);
+  ranks.together([&] {
+    inbox_.for_each([&](Reader& from, int) { lists_.append(from); });
+    lists_.sort();
+  });
 }
 
 }  // namespace supple

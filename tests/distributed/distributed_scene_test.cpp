@@ -76,10 +76,11 @@ void live(std::uint64_t seed, ContactKinds contacts, const DistributedOptions& o
   const bool is_deep = contains(contacts, ContactKinds::penetration);
   for (int i = 0; i < 6; ++i) lives.add_object(is_deep);
   for (int step = 0; step < steps; ++step) {
-    const std::uint32_t what = lives.random.below(6);
+    const std::uint32_t what = lives.random.below(7);
     if (what == 0) lives.add_object(is_deep);
     if (what == 1) lives.remove_object();
     if (what == 2) lives.change_ranks();
+    if (what == 3) lives.change_settings();
     lives.move_objects(lives.random.below(6) == 0);
     const DetectResult& expected = lives.plain.detect({.contacts = contacts});
     const DetectResult& found = lives.distributed.detect({.contacts = contacts});
@@ -190,6 +191,128 @@ TEST(DistributedScene, EarliestImpactsEqualOneScene) {
     }
   }
   EXPECT_GT(impacts, 1);
+}
+
+TEST(DistributedScene, SafeStepsEqualOneScene) {
+  int limited = 0, whole = 0;
+  for (std::uint64_t seed = 81; seed < 85 + 2 * life_count(); ++seed) {
+    Lives lives(seed, small_clusters());
+    for (int i = 0; i < 5; ++i) lives.add_object(false);
+    for (int step = 0; step < 4; ++step) {
+      lives.move_objects(false, true);  // a vertex far away makes all pairs near
+      if (lives.random.below(2) == 0) lives.change_settings();
+      const StepOptions options{.keep = lives.random.uniform(0, 0.9)};
+      const SafeStep expected = lives.plain.collision_free_step(options);
+      EXPECT_EQ(lives.distributed.collision_free_step(options), expected)
+          << "seed " << seed << " step " << step;
+      (expected.step > 0 && expected.step < 1 ? limited : whole) += 1;
+    }
+  }
+  EXPECT_GT(limited, 1);
+  EXPECT_GT(whole, 1);
+}
+
+/// All records of the ranks, in order, on rank 0.
+template <class Row>
+std::vector<Row> gathered(const std::vector<Row>& rows) {
+  const int bytes = static_cast<int>(rows.size() * sizeof(Row));
+  std::vector<int> sizes(static_cast<std::size_t>(size_of_world())), starts = sizes;
+  MPI_Gather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
+  std::exclusive_scan(sizes.begin(), sizes.end(), starts.begin(), 0);
+  std::vector<Row> all(static_cast<std::size_t>(starts.back() + sizes.back()) / sizeof(Row));
+  MPI_Gatherv(rows.data(), bytes, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE, 0,
+              MPI_COMM_WORLD);
+  return all;
+}
+
+TEST(DistributedScene, DistancesEqualOneScene) {
+  std::size_t apart = 0, touching = 0;
+  for (const ResultPlacement placement : {ResultPlacement::gathered, ResultPlacement::owner}) {
+    DistributedOptions options = small_clusters();
+    options.results = placement;
+    for (std::uint64_t seed = 91; seed < 92 + life_count(); ++seed) {
+      Lives lives(seed, options);
+      for (int i = 0; i < 6; ++i) lives.add_object(false);
+      for (int step = 0; step < 4; ++step) {
+        lives.move_objects(step == 2);
+        if (step == 3) lives.change_settings();
+        for (const double most : {0.0, 0.3, 5.0, std::numeric_limits<double>::infinity()}) {
+          const std::vector<ProximityPair> expected = lives.plain.distances(most);
+          std::vector<ProximityPair> found = gathered(lives.distributed.distances(most));
+          if (placement == ResultPlacement::owner)
+            std::sort(found.begin(), found.end(), [](const ProximityPair& p, const ProximityPair& q) {
+              return std::pair(p.object_a, p.object_b) < std::pair(q.object_a, q.object_b);
+            });
+          if (rank_of_world() == 0) expect_same<ProximityPair>("distances", found, expected, "");
+          for (const ProximityPair& pair : expected) (pair.distance > 0 ? apart : touching) += 1;
+        }
+      }
+    }
+  }
+  EXPECT_GT(apart, 20u);
+  EXPECT_GT(touching, 5u);
+}
+
+/// Points near and far, at vertices and in the middle between two objects, others on each rank.
+std::vector<Vec3d> points_near(Lives& lives) {
+  RandomNumbers random(1000 + static_cast<std::uint64_t>(rank_of_world()));
+  std::vector<Vec3d> points{{0, 0, 0}, {1e6, -1e6, 3}, {1e30, 0, 0}, {1e300, 1e300, 0}};
+  points.push_back({std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  for (int i = 0; i < 40; ++i) points.push_back(random.vector(4));
+  for (const LivingObject& object : lives.objects) {
+    points.push_back(object.now[random.below(static_cast<std::uint32_t>(object.now.size()))]);
+    points.push_back(0.5 * (object.place + lives.objects.front().place));
+  }
+  return points;
+}
+
+TEST(DistributedScene, ClosestPointsEqualOneScene) {
+  std::size_t found_any = 0;
+  for (std::uint64_t seed = 101; seed < 102 + life_count(); ++seed) {
+    Lives lives(seed, small_clusters());
+    for (int i = 0; i < 6; ++i) lives.add_object(false);
+    for (int step = 0; step < 4; ++step) {
+      lives.move_objects(step == 2);
+      const std::vector<Vec3d> points = points_near(lives);
+      std::vector<ClosestOptions> searches(4);
+      searches[1].max_distance = 0.4;
+      searches[2].filter.mask = 2;
+      searches[3].filter.object = lives.objects[1].id;
+      for (const ClosestOptions& options : searches) {
+        std::vector<std::optional<ClosestPoint>> expected(points.size()), found(points.size());
+        lives.plain.closest(points, expected, options);
+        lives.distributed.closest(points, found, options);
+        for (std::size_t i = 0; i < points.size(); ++i)
+          ASSERT_EQ(found[i], expected[i]) << "seed " << seed << " step " << step << " point " << i;
+        found_any += static_cast<std::size_t>(std::count_if(
+            found.begin(), found.end(), [](const auto& closest) { return closest.has_value(); }));
+      }
+    }
+  }
+  EXPECT_GT(found_any, 100u);
+}
+
+/// Points at the same distance of two triangles that are in different clusters, on different ranks.
+TEST(DistributedScene, TheFirstOfTrianglesAtTheSameDistance) {
+  const TriangleMesh ball = make_icosphere(6);
+  const auto ranks = static_cast<std::uint32_t>(size_of_world());
+  Scene plain;
+  DistributedScene distributed(MPI_COMM_WORLD, small_clusters());
+  std::vector<Vec3d> centers, points;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    std::vector<Vec3d> positions = ball.positions;
+    for (Vec3d& p : positions) p.x += 3.0 * i;
+    const ObjectId id = plain.add(positions, ball.triangles);
+    if (i % ranks == static_cast<std::uint32_t>(rank_of_world()))
+      distributed.add(id, positions, ball.triangles);
+    points.push_back({3.0 * i, 0, 0});
+    points.push_back({3.0 * i + 1.5, 0, 0});
+    points.insert(points.end(), positions.begin(), positions.begin() + 40);
+  }
+  std::vector<std::optional<ClosestPoint>> expected(points.size()), found(points.size());
+  plain.closest(points, expected);
+  distributed.closest(points, found);
+  EXPECT_EQ(found, expected);
 }
 
 TEST(DistributedScene, WorkIsSpreadOverTheRanks) {

@@ -37,6 +37,7 @@ struct LivingObject {
   int home = 0;
   Vec3d place;
   std::vector<Vec3d> now, from;
+  std::vector<std::uint32_t> groups, masks;  // of vertices
   bool is_on_path = false;
 };
 
@@ -150,6 +151,50 @@ class Lives {
     if (object.is_on_path) place(object);
   }
 
+  /// Changes an option of a random object in both scenes, or the pair filter.
+  void change_settings() {
+    if (objects.empty()) return;
+    LivingObject& object = objects[random.below(static_cast<std::uint32_t>(objects.size()))];
+    const auto both = [&](const auto& change) {
+      change(plain);
+      for_my_part(object, [&](const Part*) { change(distributed); });
+    };
+    ObjectOptions& options = object.options;
+    switch (random.below(7)) {
+      case 0:
+        options.margin = random.uniform(0, 0.1);
+        both([&](auto& scene) { scene.set_margin(object.id, options.margin); });
+        break;
+      case 1:
+        options.min_separation = random.uniform(0, 0.02);
+        both([&](auto& scene) { scene.set_min_separation(object.id, options.min_separation); });
+        break;
+      case 2:
+        options.group = 1 + random.below(3);
+        options.mask = 1 + random.below(3);
+        both([&](auto& scene) { scene.set_group(object.id, options.group, options.mask); });
+        break;
+      case 3:
+        options.is_static = !options.is_static;
+        both([&](auto& scene) { scene.set_static(object.id, options.is_static); });
+        break;
+      case 4:
+        options.self_collision = !options.self_collision;
+        both([&](auto& scene) { scene.set_self_collision(object.id, options.self_collision); });
+        break;
+      case 5:
+        set_vertex_groups(object);
+        break;
+      default: {
+        const std::uint32_t divisor = 2 + random.below(4);
+        PairFilter filter = [divisor](ObjectId a, ObjectId b) { return (a.index + b.index) % divisor != 0; };
+        if (random.below(3) == 0) filter = {};
+        plain.set_pair_filter(filter);
+        distributed.set_pair_filter(filter);
+      }
+    }
+  }
+
   void remove_object() {
     if (objects.empty()) return;
     const std::uint32_t which = random.below(static_cast<std::uint32_t>(objects.size()));
@@ -158,7 +203,8 @@ class Lives {
     objects.erase(objects.begin() + which);
   }
 
-  void move_objects(bool crowd) {
+  /// Some coordinates are not finite, some far away unless `all_near`.
+  void move_objects(bool crowd, bool all_near = false) {
     for (LivingObject& object : objects) {
       if (object.options.is_static || random.below(5) == 0) continue;
       object.place = crowd ? Vec3d{2, 2, 2} + random.vector(0.2) : object.place + random.vector(0.3);
@@ -169,7 +215,7 @@ class Lives {
         object.now[random.below(static_cast<std::uint32_t>(object.now.size()))].y =
             random.below(2) == 0 ? std::numeric_limits<double>::quiet_NaN()
                                  : std::numeric_limits<double>::infinity();
-      if (random.below(30) == 0) object.now[0].x = 1e30;
+      if (!all_near && random.below(30) == 0) object.now[0].x = 1e30;
       place(object);
       with_views(
           object.is_float, nullptr,
@@ -244,6 +290,32 @@ class Lives {
             }
           },
           object.now);
+    });
+    if (!object.groups.empty()) group_my_part(object);
+  }
+
+  void set_vertex_groups(LivingObject& object) {
+    object.groups.clear();
+    object.masks.clear();
+    for (std::size_t v = 0; v < object.now.size() && random.below(50) != 0; ++v) {
+      object.groups.push_back(1 + random.below(3));
+      object.masks.push_back(1 + random.below(3));
+    }
+    if (object.groups.size() != object.now.size()) object.groups = object.masks = {};
+    plain.set_vertex_groups(object.id, object.groups, object.masks);
+    group_my_part(object);
+  }
+  void group_my_part(const LivingObject& object) {
+    for_my_part(object, [&](const Part* part) {
+      std::vector<std::uint32_t> groups = object.groups, masks = object.masks;
+      if (part != nullptr && !groups.empty()) {
+        groups = masks = {};
+        for (const std::uint32_t v : part->vertices) {
+          groups.push_back(object.groups[v]);
+          masks.push_back(object.masks[v]);
+        }
+      }
+      distributed.set_vertex_groups(object.id, groups, masks);
     });
   }
 

@@ -6,8 +6,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "supple/options.hpp"
+#include "supple/queries.hpp"
 #include "supple/result.hpp"
 #include "supple/safe_step.hpp"
 #include "supple/types.hpp"
@@ -72,14 +74,15 @@ struct DistributedStats {
 /// have these ids. An id must not return after its object was removed: a new object takes a higher
 /// `ObjectId::generation`.
 ///
-/// `add`, `add_part`, `remove`, `set_positions` and `set_motion` are calls of one rank. The others are
-/// collective: all ranks make them in the same order with the same arguments. An error on one rank, such as
+/// Calls that name an object are calls of the ranks that have it. The others are collective: all ranks make
+/// them in the same order with the same arguments. An error on one rank, such as
 /// bad input or no memory, becomes the same `Error` on all of them, which names the rank.
 ///
 /// Method: clusters of neighbouring triangles are sent as boxes. Recursive coordinate bisection gives each
 /// rank a region of space. Two clusters are tested by each rank whose region the intersection of their boxes
 /// meets; it gets their vertices, the topology only once, and reports the contacts in its region. Penetration
-/// needs whole objects: the rank whose region contains the lower corner of what two boxes share gets both.
+/// and distances need whole objects: the rank whose region contains the lower corner of what two boxes share
+/// gets both.
 ///
 /// Memory of a rank: the positions and triangles that it added, and octrees of the clusters that it needs.
 class DistributedScene {
@@ -104,6 +107,21 @@ class DistributedScene {
   /// As `Scene::set_motion`.
   void set_motion(ObjectId id, PositionsView from, PositionsView to);
 
+  // As the functions of `Scene`. Each rank that has a part of the object makes the call. The next collective
+  // call sends the object's topology again and rebuilds its octrees.
+  void set_static(ObjectId id, bool is_static);
+  void set_group(ObjectId id, std::uint32_t group, std::uint32_t mask);
+  void set_margin(ObjectId id, double margin);
+  void set_min_separation(ObjectId id, double separation);
+  void set_self_collision(ObjectId id, bool enabled);
+  /// Of the vertices that this rank added, in its order; parts give the vertices that they share the same
+  /// numbers.
+  void set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
+                         std::span<const std::uint32_t> masks);
+  /// As `Scene::set_pair_filter`. All ranks set a function that gives the same answers. In each collective
+  /// call, a rank asks it once for each pair of objects that it may test.
+  void set_pair_filter(PairFilter filter);
+
   /// Finds the contacts as `Scene::detect` does. The result is valid until the next call. Counts of its
   /// statistics are sums over all ranks, its times those of the slowest rank. Requests with `max_contacts`,
   /// manifolds or first contacts of elements are errors.
@@ -112,6 +130,15 @@ class DistributedScene {
   std::optional<ContinuousContact> earliest_impact();
   /// As `Scene::max_step`; the same on all ranks.
   SafeStep max_step();
+  /// As `Scene::collision_free_step`; the same on all ranks.
+  SafeStep collision_free_step(const StepOptions& options = {});
+  /// As `Scene::distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair.
+  std::vector<ProximityPair> distances(double max_distance);
+  /// As `Scene::closest` for the points of this rank, among the objects of all ranks. The options are the
+  /// same on all ranks; a signed distance is an error. Takes time for each point and each cluster of the
+  /// regions that its ball meets, whose radius is the distance of a cluster's farthest corner.
+  void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
+               const ClosestOptions& options = {});
 
   int rank() const;
   int rank_count() const;

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -76,6 +77,10 @@ struct ImpactWorker : PassWorker<ContinuousContact> {
   }
 };
 
+/// What the searches of all processes of one scene found first, from what the search of this one found; a step
+/// without a limit is nothing.
+using FirstOfAll = std::function<SafeStep(const SafeStep&)>;
+
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
 /// phase hands its candidates to the exact stage in batches.
 class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, ContinuousContact> {
@@ -93,7 +98,7 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   /// See `Scene::collision_free_step`. Does not change the lists.
   SafeStep find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
                           const ImpactSearchOptions& options, const StepOptions& step,
-                          const Parallel& parallel);
+                          const FirstOfAll& first_of_all, const Parallel& parallel);
   /// See `Scene::collision_free_steps`. One step for each element of `objects`; those of no job have the step
   /// 1. Does not change the lists.
   std::vector<ObjectStep> find_safe_steps(std::span<const ContactJob> jobs,
@@ -147,6 +152,7 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   void list_limits();
   void join_islands();
   void shorten(std::uint32_t island, const StepLimit& limit);
+  std::vector<std::uint32_t> near_jobs() const;
   void prove_rounded_positions(const Parallel& parallel);
   bool moves(std::uint32_t object) const;
   std::uint32_t island_of(std::uint32_t object) const;

@@ -49,20 +49,30 @@ Vec3d rounded_position(const Vec3d& start, const Vec3d& end, double part) {
 
 SafeStep ImpactPass::find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
                                     const ImpactSearchOptions& options, const StepOptions& step,
-                                    const Parallel& parallel) {
+                                    const FirstOfAll& first_of_all, const Parallel& parallel) {
   start_steps(jobs, objects, options, step);
   ends_early_ = true;
   island_.assign(objects.size(), 0);
   safe_.assign(std::max<std::size_t>(objects.size(), 1), {});
   // What touches bounds the step, and a short step needs little more than the separation.
   search(Search::touching, all_jobs_, 1, parallel);
-  const Earliest* const touching = earliest_of_workers();
-  if (touching != nullptr && touching->contact.toi == 0) return {0, pair_of_contact(touching->contact)};
-  search(Search::safe_step, all_jobs_, touching != nullptr ? end_of_search_for(touching->contact.toi) : 1,
-         parallel);
+  const Earliest* const earliest = earliest_of_workers();
+  const SafeStep touching = first_of_all(
+      earliest != nullptr ? SafeStep{earliest->contact.toi, pair_of_contact(earliest->contact)} : SafeStep{});
+  if (touching.step == 0) return touching;
+  search(Search::safe_step, all_jobs_, touching.limit ? end_of_search_for(touching.step) : 1, parallel);
   list_limits();
   for (const StepLimit& limit : limits_) shorten(0, limit);
-  prove_rounded_positions(parallel);
+  safe_[0] = first_of_all(safe_[0]);
+  const std::vector<std::uint32_t> open = near_jobs();
+  for (double factor = 1 - 0x1p-19; safe_[0].step > 0; factor = 0.5) {
+    search(Search::rounded, open, std::min(1.0f, round_up(safe_[0].step)), parallel);
+    list_limits();
+    const SafeStep failing =
+        first_of_all(limits_.empty() ? SafeStep{} : SafeStep{limits_[0].time, limits_[0].pair});
+    if (!failing.limit) break;
+    safe_[0] = {factor * safe_[0].step, failing.limit};
+  }
   return safe_[0];
 }
 
@@ -147,12 +157,18 @@ void ImpactPass::shorten(std::uint32_t island, const StepLimit& limit) {
   if (limit.time < safe_[island].step) safe_[island] = {limit.time, limit.pair};
 }
 
+/// The jobs of elements that are so near that rounding could make them touch.
+std::vector<std::uint32_t> ImpactPass::near_jobs() const {
+  std::vector<std::uint32_t> near;
+  for (const Worker& worker : workers_)
+    near.insert(near.end(), worker.near_jobs.begin(), worker.near_jobs.end());
+  sort_once(near);
+  return near;
+}
+
 /// Shortens the parts of islands until the positions that they round to are reached without contact.
 void ImpactPass::prove_rounded_positions(const Parallel& parallel) {
-  std::vector<std::uint32_t> open;
-  for (const Worker& worker : workers_)
-    open.insert(open.end(), worker.near_jobs.begin(), worker.near_jobs.end());
-  sort_once(open);
+  std::vector<std::uint32_t> open = near_jobs();
   std::erase_if(open, [&](std::uint32_t job) { return is_between_islands(job); });
   const auto safe_of = [&](std::uint32_t job) -> SafeStep& { return safe_[island_of(mover_of(job))]; };
   std::vector<std::uint8_t> is_shorter(safe_.size(), 0), fails(safe_.size(), 1);

@@ -36,9 +36,10 @@ void StepSearch::prepare_safe_step(const ImpactSearchOptions& options, const Ste
   }
 }
 
-SafeStep StepSearch::safe_step(const ImpactSearchOptions& options, const StepOptions& step) {
+SafeStep StepSearch::safe_step(const ImpactSearchOptions& options, const StepOptions& step,
+                               const FirstOfAll& first_of_all) {
   prepare_safe_step(options, step);
-  return pass_.find_safe_step(pairs_.jobs(), objects_, options, step, world_.parallel);
+  return pass_.find_safe_step(pairs_.jobs(), objects_, options, step, first_of_all, world_.parallel);
 }
 
 std::span<const ObjectStep> StepSearch::safe_steps(const ImpactSearchOptions& options,

@@ -18,7 +18,9 @@ class StepSearch {
   explicit StepSearch(World& world) : world_(world), pairs_(world) {}
 
   std::optional<ContinuousContact> earliest_impact(const ImpactSearchOptions& options);
-  SafeStep safe_step(const ImpactSearchOptions& options, const StepOptions& step);
+  SafeStep safe_step(
+      const ImpactSearchOptions& options, const StepOptions& step,
+      const FirstOfAll& first_of_all = [](const SafeStep& found) { return found; });
   /// Ascending by object. The span is valid until the next call.
   std::span<const ObjectStep> safe_steps(const ImpactSearchOptions& options, const StepOptions& step);
 

@@ -1,0 +1,227 @@
+// Closest points. The rank whose region contains a point bounds its distance by the boxes of clusters there.
+// The ranks whose regions the ball of this radius meets find the nearest triangle of the clusters in the ball,
+// each cluster on the rank whose region contains the lower corner of what its box and that of the ball share.
+// The rank of the point takes the nearest of all.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "core/error.hpp"
+#include "core/sort_once.hpp"
+#include "distributed_implementation.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/vector.hpp"
+#include "queries/check_queries.hpp"
+#include "queries/queries.hpp"
+
+namespace supple {
+
+struct DistributedScene::Implementation::PointQuery {
+  Vec3d point;
+  double radius = 0;
+  std::uint64_t index = 0;  ///< of the point on its rank
+  std::int32_t rank = 0;
+};
+
+struct DistributedScene::Implementation::Candidate {
+  std::uint64_t index = 0;
+  ClosestPoint closest;
+  std::array<Vec3d, 3> corners;
+};
+
+namespace {
+
+/// More than what sums and roots of doubles lose.
+constexpr double slack = 1 + 0x1p-40;
+
+double farthest_distance(const Vec3d& p, const Aabb& box) {
+  Vec3d way;
+  for (int axis = 0; axis < 3; ++axis)
+    way[axis] = std::max(std::fabs(p[axis] - box.min[axis]), std::fabs(p[axis] - box.max[axis]));
+  return scaled_norm(way) * slack;
+}
+
+bool is_near(const Vec3d& p, double radius, const Aabb& box) {
+  Vec3d way;
+  for (int axis = 0; axis < 3; ++axis)
+    way[axis] = std::max({0.0, box.min[axis] - p[axis], p[axis] - box.max[axis]});
+  return !(scaled_norm(way) > radius * slack);
+}
+
+Aabb box_of_ball(const Vec3d& p, double radius) {
+  const Vec3d to_corner{radius, radius, radius};
+  Aabb box;
+  extend(box, p - to_corner);
+  extend(box, p + to_corner);
+  return box;
+}
+
+bool sees(const QueryFilter& filter, const Unit& unit) {
+  return (!filter.object || *filter.object == unit.name.object) && (unit.group & filter.mask) != 0;
+}
+
+}  // namespace
+
+/// Collective: gives each point to the rank whose region contains it, with a radius in which a triangle is.
+/// Returns the points whose balls meet the region of this rank.
+std::vector<DistributedScene::Implementation::PointQuery> DistributedScene::Implementation::query_points(
+    std::span<const Vec3d> points, const QueryFilter& seen) {
+  Aabb all;
+  for (const Unit& unit : clusters_) {
+    if (sees(seen, unit)) extend(all, unit.box);
+  }
+  std::vector<double> bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds.push_back(-double{all.min[axis]});
+    bounds.push_back(double{all.max[axis]});
+  }
+  ranks.largest(bounds);
+  for (int axis = 0; axis < 3; ++axis) {
+    all.min[axis] = static_cast<float>(-bounds[static_cast<std::size_t>(2 * axis)]);
+    all.max[axis] = static_cast<float>(bounds[static_cast<std::size_t>(2 * axis) + 1]);
+  }
+  if (all.empty()) return {};
+  const auto read_points = [&](const auto& read) {
+    inbox_.for_each([&](Reader& from, int) {
+      while (!from.is_done()) read(from.get<PointQuery>());
+    });
+  };
+  outbox_.clear();
+  ranks.together([&] {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!is_finite(points[i])) continue;
+      const std::span<const int> homes = regions_.ranks_of(box_of_ball(points[i], 0));
+      outbox_.to(*std::min_element(homes.begin(), homes.end()))
+          .put(PointQuery{points[i], farthest_distance(points[i], all), i, ranks.rank()});
+    }
+  });
+  ranks.exchange(outbox_, inbox_);
+  outbox_.clear();
+  ranks.together([&] {
+    read_points([&](PointQuery query) {
+      for (const Unit& unit : clusters_) {
+        if (sees(seen, unit)) query.radius = std::min(query.radius, farthest_distance(query.point, unit.box));
+      }
+      for (const int rank : regions_.ranks_of(box_of_ball(query.point, query.radius)))
+        outbox_.to(rank).put(query);
+    });
+  });
+  ranks.exchange(outbox_, inbox_);
+  std::vector<PointQuery> queries;
+  ranks.together([&] { read_points([&](const PointQuery& query) { queries.push_back(query); }); });
+  return queries;
+}
+
+/// Needs the clusters in the balls of the points, and forgets points without one here.
+void DistributedScene::Implementation::need_clusters_near(std::vector<PointQuery>& points,
+                                                          const QueryFilter& seen) {
+  needed_.clear();
+  tested_.clear();
+  std::vector<double> work(clusters_.size(), 0);
+  std::erase_if(points, [&](const PointQuery& query) {
+    const Aabb ball = box_of_ball(query.point, query.radius);
+    bool has_any = false;
+    for (std::size_t i = 0; i < clusters_.size(); ++i) {
+      if (!sees(seen, clusters_[i]) || !is_near(query.point, query.radius, clusters_[i].box)) continue;
+      const Aabb shared = shared_box(ball, clusters_[i].box);
+      if (!region_.contains(Vec3d{shared.min.x, shared.min.y, shared.min.z})) continue;
+      work[i] += 1;
+      has_any = true;
+    }
+    return !has_any;
+  });
+  for (std::size_t i = 0; i < clusters_.size(); ++i) {
+    if (work[i] > 0) needed_.push_back({clusters_[i].name, work[i]});
+  }
+}
+
+/// Finds the nearest triangle of this rank for each point, and sends it to the rank of the point.
+void DistributedScene::Implementation::send_nearest(std::span<const PointQuery> points,
+                                                    const ClosestOptions& closest_options) {
+  outbox_.clear();
+  ClosestOptions here = closest_options;
+  if (here.filter.object) {
+    here.filter.object = local_.local_object(*here.filter.object);
+    if (!here.filter.object) return;
+  }
+  std::vector<Vec3d> places;
+  for (const PointQuery& query : points) places.push_back(query.point);
+  std::vector<std::optional<ClosestPoint>> found(points.size());
+  Queries(world()).closest(places, found, here);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!found[i]) continue;
+    Candidate candidate{points[i].index, *found[i], {}};
+    const WorldObject& object = world()[found[i]->object.index];
+    const Triangle corners = object.octree().user_triangle(found[i]->triangle);
+    for (std::size_t c = 0; c < 3; ++c) candidate.corners[c] = object.placement().position(corners[c]);
+    candidate.closest.object = user(found[i]->object);
+    candidate.closest.triangle = local_.user_face(found[i]->object.index, found[i]->triangle);
+    outbox_.to(points[i].rank).put(candidate);
+  }
+}
+
+void DistributedScene::Implementation::closest(std::span<const Vec3d> points,
+                                               std::span<std::optional<ClosestPoint>> results,
+                                               const ClosestOptions& closest_options) {
+  ranks.together([&] {
+    check_counts(points.size(), results.size(), "closest");
+    check_distance(closest_options.max_distance, "closest");
+    if (closest_options.signed_distance)
+      fail("DistributedScene::closest: signed_distance is not supported; take the object to one Scene");
+  });
+  const QueryFilter& seen = closest_options.filter;
+  question_ = {};
+  by_objects_ = false;
+  growth_ = 0;
+  exchange_units();
+  if (seen.object && !ranks.any(homes_.contains(*seen.object)))
+    fail("closest: object " + std::to_string(seen.object->index) + " (generation " +
+         std::to_string(seen.object->generation) + ") is not in the scene");
+  std::vector<PointQuery> queries = query_points(points, seen);
+  ranks.together([&] { need_clusters_near(queries, seen); });
+  fetch_clusters();
+  ranks.together([&] { send_nearest(queries, closest_options); });
+  ranks.exchange(outbox_, inbox_);
+  ranks.together([&] {
+    std::vector<Candidate> candidates;
+    inbox_.for_each([&](Reader& from, int) {
+      while (!from.is_done()) candidates.push_back(from.get<Candidate>());
+    });
+    const auto key = [](const Candidate& c) {
+      return std::tuple(c.index, c.closest.object, c.closest.triangle);
+    };
+    std::sort(candidates.begin(), candidates.end(),
+              [&](const Candidate& p, const Candidate& q) { return key(p) < key(q); });
+    std::fill(results.begin(), results.end(), std::nullopt);
+    for (auto first = candidates.begin(); first != candidates.end();) {
+      const auto end = std::find_if(first, candidates.end(),
+                                    [&](const Candidate& c) { return c.index != first->index; });
+      results[first->index] = nearest_of({first, end}, points[first->index]);
+      first = end;
+    }
+  });
+  end_step();
+}
+
+/// Exact arithmetic decides between distances that round alike.
+ClosestPoint DistributedScene::Implementation::nearest_of(std::span<const Candidate> candidates,
+                                                          const Vec3d& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidate& c : candidates) least = std::min(least, c.closest.distance);
+  std::vector<const Candidate*> nearest;  // in canonical order
+  for (const Candidate& c : candidates) {
+    if (!(c.closest.distance > least * slack)) nearest.push_back(&c);
+  }
+  if (nearest.size() == 1) return nearest[0]->closest;
+  World corners({.threads = 1});
+  for (const Candidate* const c : nearest)
+    corners.add(std::span<const Vec3d>(c->corners), std::array{Triangle{0, 1, 2}}, {}, "");
+  std::optional<ClosestPoint> found;
+  Queries(corners).closest({&point, 1}, {&found, 1}, {});
+  return nearest[found ? found->object.index : 0]->closest;
+}
+
+}  // namespace supple

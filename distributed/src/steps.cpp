@@ -1,0 +1,81 @@
+// The first impact and safe steps: each rank searches its pairs, and all take what the first of them found.
+
+#include <optional>
+
+#include "distributed_implementation.hpp"
+
+namespace supple {
+namespace {
+
+/// A safe step and the pair that ends it, as a contact at this time.
+std::optional<ContinuousContact> as_contact(const SafeStep& safe) {
+  if (!safe.limit) return std::nullopt;
+  ContinuousContact contact{};
+  contact.object_a = safe.limit->object_a;
+  contact.object_b = safe.limit->object_b;
+  contact.kind = safe.limit->kind;
+  contact.element_a = safe.limit->element_a;
+  contact.element_b = safe.limit->element_b;
+  contact.toi = safe.step;
+  return contact;
+}
+
+SafeStep as_step(const std::optional<ContinuousContact>& contact) {
+  return contact ? SafeStep{contact->toi, pair_of_contact(*contact)} : SafeStep{};
+}
+
+}  // namespace
+
+/// Collective: the first in canonical order of those with the earliest time. `own` has the numbers of the
+/// local world, what is returned those of the user.
+std::optional<ContinuousContact> DistributedScene::Implementation::first_of_all(
+    const std::optional<ContinuousContact>& own) {
+  constexpr double never = 2;
+  std::vector<double> latest{own ? -own->toi : -never};
+  ranks.largest(latest);
+  const double earliest = -latest[0];
+  if (earliest == never) return std::nullopt;
+  outbox_.clear();
+  if (own && own->toi == earliest) outbox_.to(0).put(named(*own));
+  ranks.exchange(outbox_, inbox_);
+  ContinuousContact first{};
+  bool is_first = true;
+  inbox_.for_each([&](Reader& from, int) {
+    const auto other = from.get<ContinuousContact>();
+    if (is_first || is_before(other, first)) first = other;
+    is_first = false;
+  });
+  MPI_Bcast(&first, sizeof first, MPI_BYTE, 0, ranks.handle());
+  return first;
+}
+
+std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impact() {
+  const SceneOptions& of = options.scene;
+  const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
+  question_ = {.contacts = ContactKinds::continuous, .impact = search};
+  prepare();
+  std::optional<ContinuousContact> own;
+  ranks.together([&] { own = step_search_.earliest_impact(search); });
+  const std::optional<ContinuousContact> first = first_of_all(own);
+  end_step();
+  return first;
+}
+
+SafeStep DistributedScene::Implementation::collision_free_step(const StepOptions& step) {
+  ranks.together([&] { check(step, "collision_free_step"); });
+  const SceneOptions& of = options.scene;
+  const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
+  question_ = {.contacts = ContactKinds::continuous, .impact = search, .safe_step = step};
+  prepare();
+  SafeStep safe;
+  ranks.together([&] {
+    safe = step_search_.safe_step(search, step, [&](const SafeStep& own) {
+      ranks.together([] {});  // a rank that failed tells the others here
+      return as_step(first_of_all(as_contact(own)));
+    });
+  });
+  end_step();
+  return safe;
+}
+
+}  // namespace supple
