@@ -54,7 +54,7 @@ def contracts(headers):
 
 
 def generate(api):
-    headers = [header for header in api["headers"] if header["library"] not in ("formats", "distributed")]
+    headers = [header for header in api["headers"] if header["library"] != "formats"]
     enums = [entity for header in headers for entity in header["entities"]
              if entity["kind"] == "enum" and entity["name"] not in LEFT_OUT]
     parts = ['"""Made from docs/api.json by tools/make_python.py."""\n\nimport enum\n']

@@ -45,4 +45,4 @@ done
 clang_asan=$(clang++-19 -print-file-name=libclang_rt.asan-x86_64.so)
 LD_PRELOAD_FOR_TESTS=$clang_asan tools/test_python.sh asan --ignore=bindings/python/tests/test_documents.py \
   --ignore=bindings/python/tests/test_types.py --ignore=bindings/python/tests/test_frames.py \
-  --ignore=bindings/python/tests/test_cluster.py
+  --ignore=bindings/python/tests/test_cluster.py --ignore=bindings/python/tests/test_distributed.py

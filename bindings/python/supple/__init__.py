@@ -10,6 +10,7 @@ from . import _core
 from ._broad_phase import BroadPhase, enclosing_boxes
 from ._check import CheckReport, FrameCheck, check
 from ._core import Error, MotionError, Stop
+from ._distributed_scene import DistributedObject, DistributedScene
 from ._elements import (
     edge_edge_distance,
     first_contact_by_algebra,
@@ -96,6 +97,8 @@ __all__ = [
     "ContinuousListing",
     "CurveKind",
     "Descent",
+    "DistributedObject",
+    "DistributedScene",
     "ElementKinds",
     "ElementPairKind",
     "Error",
@@ -131,6 +134,7 @@ __all__ = [
     "Recording",
     "RegionSphereTest",
     "Result",
+    "ResultPlacement",
     "SafeStep",
     "SavedResult",
     "Scene",

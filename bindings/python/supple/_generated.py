@@ -284,6 +284,17 @@ class PenetrationDifferenceFault(enum.IntEnum):
     'reported with another triangle than the nearest, or with an inaccurate depth'
 
 
+class ResultPlacement(enum.IntEnum):
+    'On which rank the contacts of a step are.'
+
+    gathered = 0
+    'all on rank 0: the lists of `Scene.detect`'
+    owner = 1
+    'On the rank that added object a; of an object in parts, on the lowest rank that has one of them. The events and pairs of two objects are on a rank that their ids choose.'
+    spread = 2
+    'Where they were found, so nothing is sent: as even as the work. The events and pairs of two objects are on a rank that their ids choose.'
+
+
 class Integrator(enum.IntEnum):
     'How a time step advances positions and velocities.'
 
@@ -295,7 +306,7 @@ class Integrator(enum.IntEnum):
     'Implicit: up to six sparse linear systems per step. First order, stable at any stiffness.'
 
 
-ENUMERATIONS = [ObjectOctreeBuild, SphereFit, RegionSphereTest, Descent, FeatureKind, IntersectionKind, ElementPairKind, ImpactCertainty, PairStage, Lasting, ManifoldSource, BoundingVolume, BroadPhaseMethod, ContactKinds, ElementKinds, ContinuousListing, PenetrationDepths, Neighbours, CurveKind, ProximityListing, Containment, NothingToTest, ContinuousDifferenceFault, ProximityDifferenceFault, PenetrationDifferenceFault, Integrator]
+ENUMERATIONS = [ObjectOctreeBuild, SphereFit, RegionSphereTest, Descent, FeatureKind, IntersectionKind, ElementPairKind, ImpactCertainty, PairStage, Lasting, ManifoldSource, BoundingVolume, BroadPhaseMethod, ContactKinds, ElementKinds, ContinuousListing, PenetrationDepths, Neighbours, CurveKind, ProximityListing, Containment, NothingToTest, ContinuousDifferenceFault, ProximityDifferenceFault, PenetrationDifferenceFault, ResultPlacement, Integrator]
 
 
 #: The comments of functions and methods in the headers.
@@ -326,6 +337,48 @@ CONTRACTS = {
         'See `DetectResult::proximity_pairs_of` in supple/result.hpp.',
     'DetectResult::vertices_on_surface_of':
         'See `DetectResult::vertices_on_surface_of` in supple/result.hpp.',
+    'DistributedScene::add':
+        'Adds an object whose triangles are all on this rank. Throws `Error` as `Scene.add` does, when this rank has the id, and when the options have `weld` or `same_vertex`: weld the mesh first.',
+    'DistributedScene::add_part':
+        "Adds a part of an object. `triangles` have the numbers of the part's vertices: 0 is the first of `part.vertices`. All ranks give the same options. Throws `Error` as `add` does.",
+    'DistributedScene::closest':
+        "As `Scene.closest` for the points of this rank, among the objects of all ranks. The options are the same on all ranks; a signed distance is an error. Takes time for each point and each cluster of the regions that its ball meets, whose radius is the distance of a cluster's farthest corner.",
+    'DistributedScene::collision_free_step':
+        'As `Scene.collision_free_step`; the same on all ranks.',
+    'DistributedScene::detect':
+        'Finds the contacts as `Scene.detect` does. The result is valid until the next call. Counts of its statistics are sums over all ranks, its times those of the slowest rank. Requests with `max_contacts`, manifolds or first contacts of elements are errors.',
+    'DistributedScene::distances':
+        'As `Scene.distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair.',
+    'DistributedScene::earliest_impact':
+        'As `Scene.earliest_impact`; the same on all ranks.',
+    'DistributedScene::max_step':
+        'As `Scene.max_step`; the same on all ranks.',
+    'DistributedScene::rank':
+        'See `DistributedScene::rank` in supple/distributed.hpp.',
+    'DistributedScene::rank_count':
+        'See `DistributedScene::rank_count` in supple/distributed.hpp.',
+    'DistributedScene::remove':
+        'Removes the object, or the part of it that this rank has.',
+    'DistributedScene::set_group':
+        'See `DistributedScene::set_group` in supple/distributed.hpp.',
+    'DistributedScene::set_margin':
+        'See `DistributedScene::set_margin` in supple/distributed.hpp.',
+    'DistributedScene::set_min_separation':
+        'See `DistributedScene::set_min_separation` in supple/distributed.hpp.',
+    'DistributedScene::set_motion':
+        'As `Scene.set_motion`.',
+    'DistributedScene::set_pair_filter':
+        'As `Scene.set_pair_filter`. All ranks set a function that gives the same answers. In each collective call, a rank asks it once for each pair of objects that it may test.',
+    'DistributedScene::set_positions':
+        'The positions of the vertices that this rank added, in its order. Copies them, O(n).',
+    'DistributedScene::set_self_collision':
+        'See `DistributedScene::set_self_collision` in supple/distributed.hpp.',
+    'DistributedScene::set_static':
+        'See `DistributedScene::set_static` in supple/distributed.hpp.',
+    'DistributedScene::set_vertex_groups':
+        'Of the vertices that this rank added, in its order; parts give the vertices that they share the same numbers.',
+    'DistributedScene::stats':
+        'What this rank did in the last collective call.',
     'ElementVertices::begin':
         'See `ElementVertices::begin` in supple/contact.hpp.',
     'ElementVertices::end':

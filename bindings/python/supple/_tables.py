@@ -148,7 +148,7 @@ class Table(np.ndarray):
             if self._scene is None:
                 raise Error(
                     "the vertices of this table need its scene; take them before the table is pickled or copied "
-                    "out of the scene"
+                    "out of the scene; a distributed scene has none"
                 )
             plain = np.ascontiguousarray(np.ndarray.view(self, np.ndarray))
             self._vertices = self._scene.vertices_of(self.record, plain.view(np.uint8).reshape(-1))

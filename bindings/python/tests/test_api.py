@@ -70,6 +70,8 @@ TYPES = {
     "ClosestOptions": "Scene.closest",
     "DetectRequest": "Scene.detect",
     "DetectResult": "Result",
+    "DistributedOptions": "DistributedScene",
+    "DistributedStats": "DistributedScene.stats",
     "Error": "Error",
     "IndexPair": "BroadPhase.find",
     "KindPair": "BroadPhase",
@@ -80,6 +82,7 @@ TYPES = {
     "NodePairList": "Inspector.node_pairs",
     "NodePairList::Pair": "Inspector.node_pairs",
     "ObjectId": "Object",
+    "ObjectPart": "DistributedScene.add_part",
     "ObjectStep": "ObjectStep",
     "OctreeCell": "Inspector.cells",
     "OctreeStatistics": "Inspector.octree_statistics",
@@ -122,6 +125,10 @@ OTHERS = {
     "MotionFunction": "Simulation.add",
     "PairFilter": "Scene.set_pair_filter",
     "Triangle": "Mesh",
+    "DistributedScene": "DistributedScene",
+    "DistributedScene::rank": "DistributedScene.rank",
+    "DistributedScene::rank_count": "DistributedScene.rank_count",
+    "DistributedScene::stats": "DistributedScene.stats",
     "EdgePoints": "edge_edge_distance",
     "TrianglePoints": "triangles_intersect",
     "check_mesh": "Mesh",
@@ -284,8 +291,14 @@ def load_checker():
 def python_names():
     """The C++ names that are there, each with its Python name."""
     names = {**TYPES, **OTHERS}
+    # Calls of an object are those of both scenes.
+    names |= {
+        cpp.replace("Scene::", "DistributedScene::"): f"DistributedObject.{name}"
+        for cpp, name in twins(supple.DistributedObject).items()
+    }
     for place, owner in (
         ("Scene.", supple.Scene),
+        ("DistributedScene.", supple.DistributedScene),
         ("Object.", supple.Object),
         ("Inspector.", supple.Inspector),
         ("Simulation.", supple.Simulation),
@@ -320,7 +333,7 @@ def test_all_of_cpp_is_there_or_has_a_reason():
     names = python_names().keys() | whole | {name for name in every if name.rpartition("::")[0] in whole}
     left_out = {name: reason for name, reason in LEFT_OUT.items() if name in every}
     assert left_out.keys() == LEFT_OUT.keys()
-    libraries = ["core", "models", "recording", "simulation"]
+    libraries = ["core", "distributed", "models", "recording", "simulation"]
     binding = {
         "names": [name for name in names if name in every and name not in left_out],
         "left_out": left_out,
