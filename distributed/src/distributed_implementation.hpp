@@ -9,6 +9,7 @@
 
 #include "answers/detection.hpp"
 #include "answers/impact/step_search.hpp"
+#include "answers/untested.hpp"
 #include "communicator.hpp"
 #include "found_lists.hpp"
 #include "home_object.hpp"
@@ -123,8 +124,12 @@ class DistributedScene::Implementation {
                                      const std::array<std::uint32_t, 2>& element) const;
   void send_results();
   void send_penetrations(const DetectResult& found);
+  bool has_pair_to_test(ContactKinds kind);
+  void list_untested();
+  TestableObject testable(ContactKinds kind, const HomeObject& object);
   void gather_step_stats();
   void end_step();
+  void count_messages();
 
   std::map<ObjectId, HomeObject> homes_;
   std::uint32_t additions_ = 0;
@@ -153,6 +158,7 @@ class DistributedScene::Implementation {
   std::map<int, FoundLists> outgoing_;        // by rank
   std::array<PairCache, pair_lists> events_;  // by `PairList`
   DetectResult result_;
+  std::vector<UntestedKind> untested_;
   std::uint64_t step_ = 0;
 };
 

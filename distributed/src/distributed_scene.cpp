@@ -115,6 +115,10 @@ void DistributedScene::Implementation::end_step() {
   ranks.sum(total);
   stats.imbalance = total[0] > 0 ? most[0] * ranks.size() / total[0] : 1;
   if (stats.divided) most_imbalance_ = std::max(options.max_imbalance, 1.1 * stats.imbalance);
+  count_messages();
+}
+
+void DistributedScene::Implementation::count_messages() {
   stats.bytes_sent = ranks.bytes_sent;
   stats.messages_sent = ranks.messages_sent;
 }
@@ -127,6 +131,11 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
     if (question_.manifolds) refuse("manifolds are not supported");
     if (question_.is_continuous() && question_.impact.listing == ContinuousListing::first)
       refuse("ContinuousListing::first is not supported");
+    for (const auto& [id, object] : homes_) {
+      if (question_.has_penetration() && object.has_vertex_groups())
+        fail("detect: penetration needs all intersections, but " + object.options.name +
+             " has vertex groups; remove them with set_vertex_groups");
+    }
   });
   prepare(question_.has_penetration());
   result_ = {};
@@ -144,6 +153,9 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   result_.step = step_++;
   gather_step_stats();
   end_step();
+  list_untested();
+  result_.untested = untested_;
+  count_messages();
   return result_;
 }
 

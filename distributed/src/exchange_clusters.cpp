@@ -266,7 +266,9 @@ void DistributedScene::Implementation::request_clusters() {
 void DistributedScene::Implementation::answer_requests() {
   outbox_.clear();
   for (auto& [id, object] : homes_) {
-    for (Cluster& cluster : object.clusters) cluster.work = static_cast<double>(cluster.elements.size());
+    for (Cluster& cluster : object.clusters) {
+      if (!by_objects_) cluster.work = static_cast<double>(cluster.elements.size());
+    }
   }
   inbox_.for_each([&](Reader& from, int rank) {
     Writer to = outbox_.to(rank);

@@ -228,6 +228,19 @@ void HomeObject::list_non_finite(const SearchedShapes& shapes, std::vector<NonFi
     vertices.push_back({id, user_vertex(v), is_finite(end_[v]) ? start_[v] : end_[v]});
 }
 
+bool HomeObject::has_finite_face() const {
+  const SearchedShapes on_the_way{.moving = true};
+  for (const Cluster& cluster : clusters) {
+    for (std::size_t f = 0; f < cluster.faces.size(); ++f) {
+      const auto [p, q, r] = cluster.elements[f];
+      if (p != q && q != r && r != p && is_finite_at(on_the_way, cluster.vertices[p]) &&
+          is_finite_at(on_the_way, cluster.vertices[q]) && is_finite_at(on_the_way, cluster.vertices[r]))
+        return true;
+    }
+  }
+  return false;
+}
+
 VertexWays HomeObject::ways_of(const Cluster& cluster) const {
   VertexWays ways;
   for (const std::uint32_t v : cluster.vertices) {

@@ -62,6 +62,10 @@ class HomeObject {
   void write_positions(std::uint32_t cluster, Writer& to) const;
 
   bool is_part() const { return is_part_; }
+  bool has_motion() const { return start_.size() != 0; }
+  bool has_vertex_groups() const { return !groups_.empty(); }
+  /// Whether it has a triangle with three different corners that are finite all the way.
+  bool has_finite_face() const;
   std::uint64_t version() const { return version_; }
   std::uint32_t user_vertex(std::uint32_t v) const { return vertex_ids_.empty() ? v : vertex_ids_[v]; }
 

@@ -108,11 +108,44 @@ TEST(DistributedErrors, OptionsThatAreNotSupported) {
       "");
 }
 
+TEST(DistributedErrors, OfSettingsAndSearches) {
+  DistributedScene scene(MPI_COMM_WORLD, {.scene = {.threads = 1}});
+  const TriangleMesh ball = make_icosphere(2);
+  const ObjectId mine{static_cast<std::uint32_t>(scene.rank())};
+  scene.add(mine, ball.positions, ball.triangles, {.name = "ball", .margin = 0.1});
+  EXPECT_NE(error_of([&] { scene.set_margin(mine, -1); }).find("set_margin"), std::string::npos);
+  EXPECT_NE(error_of([&] { scene.set_margin(ObjectId{77}, 1); }).find("is not on this rank"),
+            std::string::npos);
+  const std::vector<std::uint32_t> one{1};
+  EXPECT_NE(error_of([&] { scene.set_vertex_groups(mine, one, one); }).find("1 numbers for ball"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { scene.collision_free_step({.keep = 2}); }).find("keep"), std::string::npos);
+  EXPECT_NE(error_of([&] { scene.distances(-1); }).find("distances"), std::string::npos);
+  std::vector<std::optional<ClosestPoint>> found(1);
+  EXPECT_NE(error_of([&] { scene.closest({}, found); }).find("closest"), std::string::npos);
+  EXPECT_NE(error_of([&] { scene.closest({}, {}, {.filter = {.object = ObjectId{99}}}); }).find("object 99"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { scene.closest({}, {}, {.signed_distance = true}); }).find("signed_distance"),
+            std::string::npos);
+  std::vector<std::uint32_t> bits(ball.positions.size(), 1);
+  if (scene.rank() == 0) scene.set_vertex_groups(mine, bits, bits);
+  EXPECT_NE(error_of([&] {
+              scene.detect({.contacts = ContactKinds::penetration});
+            }).find("rank 0: detect: penetration needs all intersections, but ball has vertex groups"),
+            std::string::npos);
+  EXPECT_EQ(scene.detect().step, 0u);
+}
+
 TEST(DistributedErrors, AnEmptySceneHasNoContacts) {
   DistributedScene scene(MPI_COMM_WORLD);
   EXPECT_TRUE(scene.detect().contacts.empty());
   EXPECT_FALSE(scene.earliest_impact().has_value());
   EXPECT_EQ(scene.max_step(), SafeStep{});
+  EXPECT_EQ(scene.collision_free_step(), SafeStep{});
+  EXPECT_TRUE(scene.distances(1).empty());
+  std::vector<std::optional<ClosestPoint>> found(1, ClosestPoint{});
+  scene.closest(std::vector<Vec3d>{{0, 0, 0}}, found);
+  EXPECT_FALSE(found[0].has_value());
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ void expect_same(const DetectResult& found, const DetectResult& expected, const 
   expect_same<ContactGroup>("continuous_groups", found.continuous_groups, expected.continuous_groups, where);
   expect_same<ContactGroup>("proximity_groups", found.proximity_groups, expected.proximity_groups, where);
   expect_same<NonFiniteVertex>("non_finite", found.non_finite_vertices, expected.non_finite_vertices, where);
+  expect_same<UntestedKind>("untested", found.untested, expected.untested, where);
   expect_same<ObjectPair>("volume stay", found.volume_events.stay, expected.volume_events.stay, where);
   expect_same<ObjectPair>("contact stay", found.contact_events.stay, expected.contact_events.stay, where);
 }
@@ -80,7 +81,7 @@ void live(std::uint64_t seed, ContactKinds contacts, const DistributedOptions& o
     if (what == 0) lives.add_object(is_deep);
     if (what == 1) lives.remove_object();
     if (what == 2) lives.change_ranks();
-    if (what == 3) lives.change_settings();
+    if (what == 3) lives.change_settings(!is_deep);
     lives.move_objects(lives.random.below(6) == 0);
     const DetectResult& expected = lives.plain.detect({.contacts = contacts});
     const DetectResult& found = lives.distributed.detect({.contacts = contacts});
@@ -193,6 +194,68 @@ TEST(DistributedScene, EarliestImpactsEqualOneScene) {
   EXPECT_GT(impacts, 1);
 }
 
+/// Scenes of no, one or two objects, which often have nothing to test.
+TEST(DistributedScene, UntestedKindsEqualOneScene) {
+  std::set<NothingToTest> reasons;
+  for (std::uint64_t seed = 111; seed < 141 + 4 * life_count(); ++seed) {
+    const bool is_deep = seed % 2 == 0;
+    const ContactKinds kinds = ContactKinds::intersection | ContactKinds::continuous |
+                               ContactKinds::proximity |
+                               (is_deep ? ContactKinds::penetration : ContactKinds::none);
+    Lives lives(seed, small_clusters());
+    for (int step = 0; step < 5; ++step) {
+      if (lives.objects.size() < 2 && step % 2 == 1) lives.add_object(is_deep);
+      lives.move_objects(false);
+      for (int i = 0; i < 3; ++i) lives.change_settings(!is_deep);
+      const DetectResult& expected = lives.plain.detect({.contacts = kinds});
+      const DetectResult& found = lives.distributed.detect({.contacts = kinds});
+      expect_same<UntestedKind>("untested", found.untested, expected.untested,
+                                "seed " + std::to_string(seed) + " step " + std::to_string(step));
+      for (const UntestedKind& untested : expected.untested) reasons.insert(untested.reason);
+    }
+  }
+  for (const NothingToTest reason :
+       {NothingToTest::no_objects, NothingToTest::one_object, NothingToTest::no_motion,
+        NothingToTest::no_margin, NothingToTest::no_solid, NothingToTest::all_static, NothingToTest::groups,
+        NothingToTest::filter})
+    EXPECT_TRUE(reasons.contains(reason)) << static_cast<int>(reason);
+}
+
+/// A fan of triangles in parts, of which no two are separate, and a scene without finite elements.
+TEST(DistributedScene, AFanInPartsHasNothingToTest) {
+  const auto ranks = static_cast<std::uint32_t>(size_of_world()),
+             rank = static_cast<std::uint32_t>(rank_of_world());
+  constexpr std::uint32_t count = 12;
+  std::vector<Vec3d> corners{{0, 0, 0}};
+  std::vector<Triangle> fan;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    corners.push_back({1.0 + i, 1.0 * i * i, 1});
+    if (i > 0) fan.push_back({0, i, i + 1});
+  }
+  Scene plain;
+  DistributedScene distributed(MPI_COMM_WORLD);
+  const ObjectOptions options{.name = "fan", .self_collision = true};
+  const ObjectId id = plain.add(corners, fan, options);
+  std::vector<std::uint32_t> vertices(corners.size()), mine;
+  std::iota(vertices.begin(), vertices.end(), 0u);
+  std::vector<Triangle> triangles;
+  for (std::uint32_t t = rank; t < fan.size(); t += ranks) {
+    mine.push_back(t);
+    triangles.push_back(fan[t]);
+  }
+  distributed.add_part(id, corners, triangles, {vertices, mine}, options);
+  const auto compare = [&] {
+    const auto expected = plain.detect().untested, found = distributed.detect().untested;
+    expect_same<UntestedKind>("untested", found, expected, "");
+    return expected.empty() ? -1 : static_cast<int>(expected[0].reason);
+  };
+  EXPECT_EQ(compare(), static_cast<int>(NothingToTest::shared_vertex));
+  for (Vec3d& p : corners) p.x = std::numeric_limits<double>::quiet_NaN();
+  plain.set_positions(id, corners);
+  distributed.set_positions(id, corners);
+  EXPECT_EQ(compare(), static_cast<int>(NothingToTest::not_finite));
+}
+
 TEST(DistributedScene, SafeStepsEqualOneScene) {
   int limited = 0, whole = 0;
   for (std::uint64_t seed = 81; seed < 85 + 2 * life_count(); ++seed) {
@@ -200,7 +263,7 @@ TEST(DistributedScene, SafeStepsEqualOneScene) {
     for (int i = 0; i < 5; ++i) lives.add_object(false);
     for (int step = 0; step < 4; ++step) {
       lives.move_objects(false, true);  // a vertex far away makes all pairs near
-      if (lives.random.below(2) == 0) lives.change_settings();
+      if (lives.random.below(2) == 0) lives.change_settings(true);
       const StepOptions options{.keep = lives.random.uniform(0, 0.9)};
       const SafeStep expected = lives.plain.collision_free_step(options);
       EXPECT_EQ(lives.distributed.collision_free_step(options), expected)
@@ -235,7 +298,7 @@ TEST(DistributedScene, DistancesEqualOneScene) {
       for (int i = 0; i < 6; ++i) lives.add_object(false);
       for (int step = 0; step < 4; ++step) {
         lives.move_objects(step == 2);
-        if (step == 3) lives.change_settings();
+        if (step == 3) lives.change_settings(true);
         for (const double most : {0.0, 0.3, 5.0, std::numeric_limits<double>::infinity()}) {
           const std::vector<ProximityPair> expected = lives.plain.distances(most);
           std::vector<ProximityPair> found = gathered(lives.distributed.distances(most));

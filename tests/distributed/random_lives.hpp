@@ -151,8 +151,9 @@ class Lives {
     if (object.is_on_path) place(object);
   }
 
-  /// Changes an option of a random object in both scenes, or the pair filter.
-  void change_settings() {
+  /// Changes an option of a random object in both scenes, or the pair filter. Penetration permits no groups
+  /// of vertices.
+  void change_settings(bool may_group) {
     if (objects.empty()) return;
     LivingObject& object = objects[random.below(static_cast<std::uint32_t>(objects.size()))];
     const auto both = [&](const auto& change) {
@@ -183,11 +184,11 @@ class Lives {
         both([&](auto& scene) { scene.set_self_collision(object.id, options.self_collision); });
         break;
       case 5:
-        set_vertex_groups(object);
+        if (may_group) set_vertex_groups(object);
         break;
       default: {
-        const std::uint32_t divisor = 2 + random.below(4);
-        PairFilter filter = [divisor](ObjectId a, ObjectId b) { return (a.index + b.index) % divisor != 0; };
+        const std::uint32_t divisor = 2 + random.below(4), rest = random.below(2);
+        PairFilter filter = [=](ObjectId a, ObjectId b) { return (a.index + b.index) % divisor != rest; };
         if (random.below(3) == 0) filter = {};
         plain.set_pair_filter(filter);
         distributed.set_pair_filter(filter);

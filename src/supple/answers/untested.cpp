@@ -1,8 +1,6 @@
 #include "answers/untested.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -12,31 +10,6 @@
 
 namespace supple {
 namespace {
-
-/// Groups and masks of some objects, or of the vertices of one.
-class GroupPairs {
- public:
-  void add(std::uint32_t group, std::uint32_t mask) {
-    for (; group != 0; group &= group - 1) masks_[static_cast<std::size_t>(std::countr_zero(group))] |= mask;
-  }
-  /// Whether one of them may be tested against this one.
-  bool accept(std::uint32_t group, std::uint32_t mask) const {
-    for (; mask != 0; mask &= mask - 1) {
-      if ((masks_[static_cast<std::size_t>(std::countr_zero(mask))] & group) != 0) return true;
-    }
-    return false;
-  }
-  /// Whether one of them may be tested against one of the others.
-  bool accept(const GroupPairs& others) const {
-    for (std::uint32_t bit = 0; bit < masks_.size(); ++bit) {
-      if (others.accept(std::uint32_t{1} << bit, masks_[bit])) return true;
-    }
-    return false;
-  }
-
- private:
-  std::array<std::uint32_t, 32> masks_{};  // of those that have each bit in their group
-};
 
 /// What a kind of contacts tests of objects.
 struct TestedElements {
@@ -156,119 +129,106 @@ NothingToTest lack_of_quality(ContactKinds kind) {
                                            : NothingToTest::no_solid;
 }
 
-// A pair needs both traits, each in one of its objects.
-constexpr unsigned can_move = 1, has_what_is_needed = 2, both_traits = 3;
-
-unsigned traits_of(ContactKinds kind, const WorldObject& object) {
-  return (object.options.is_static ? 0 : can_move) | (has_quality(kind, object) ? has_what_is_needed : 0);
-}
-
-/// Objects that may be paired by their groups, added one after the other.
-class PairableObjects {
- public:
-  explicit PairableObjects(ContactKinds kind) : kind_(kind) {}
-
-  /// Whether the object may be paired with an earlier one.
-  bool add(const WorldObject& object) {
-    const unsigned traits = traits_of(kind_, object);
-    const auto& [group, mask] = std::pair(object.options.group, object.options.mask);
-    bool is_pairable = false;
-    for (unsigned others = 0; others < earlier_.size(); ++others) {
-      is_pairable = is_pairable || ((others | traits) == both_traits && earlier_[others].accept(group, mask));
-    }
-    earlier_[traits].add(group, mask);
-    return is_pairable;
-  }
-
- private:
-  ContactKinds kind_;
-  std::array<GroupPairs, 4> earlier_;  // by traits
-};
-
-}  // namespace
-
-/// Calls `accept(a, b)` for pairs of candidates until it returns true. After many pairs, true is assumed.
+/// Calls `accept(a, b)` for pairs of candidates that may be paired by their groups, until it returns true.
+/// After many pairs, true is assumed.
 template <class Accept>
-bool UntestedKinds::any_candidate_pair(const World& world, ContactKinds kind, const Accept& accept) const {
+bool any_pair(std::span<const TestableObject* const> candidates, const Accept& accept) {
   std::size_t left = 1 << 16;
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    for (std::size_t j = i + 1; j < candidates_.size(); ++j) {
-      const IndexPair pair{candidates_[i], candidates_[j]};
-      const WorldObject &a = world[pair.a], &b = world[pair.b];
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    for (std::size_t j = i + 1; j < candidates.size(); ++j) {
+      const TestableObject &a = *candidates[i], &b = *candidates[j];
       if (left-- == 0) return true;
-      if ((traits_of(kind, a) | traits_of(kind, b)) == both_traits && world.may_pair_by_groups(pair) &&
-          accept(pair, a, b))
-        return true;
+      if (a.may_pair(b) && a.vertex_groups.accept(b.vertex_groups) && accept(a, b)) return true;
     }
   }
   return false;
 }
 
+}  // namespace
+
+TestableObject testable_object(ContactKinds kind, ElementKinds elements, const WorldObject& object,
+                               ObjectId id, bool tests_itself) {
+  const TestedElements tested(kind, elements);
+  TestableObject found{.id = id,
+                       .has_quality = has_quality(kind, object),
+                       .is_static = object.options.is_static,
+                       .has_vertex_groups = !object.vertex_groups().empty(),
+                       .group = object.options.group,
+                       .mask = object.options.mask,
+                       .vertex_groups = vertex_group_pairs(object)};
+  found.takes_part = tested.next(object, 0) != tested.count(object);
+  found.has_elements = found.takes_part || tested.has_any(object);
+  found.tests_itself = tests_itself && kind != ContactKinds::penetration;
+  found.may_touch_itself = may_touch_itself(object);
+  found.has_separate_elements =
+      found.tests_itself && (tested.has_edges_and_points ? has_separate_elements(object, tested)
+                                                         : has_separate_triangles(object, tested));
+  return found;
+}
+
+std::optional<NothingToTest> nothing_to_test(ContactKinds kind, std::span<const TestableObject> objects,
+                                             const PairFilter& filter) {
+  std::vector<const TestableObject*> candidates;
+  for (const TestableObject& object : objects) {
+    if (object.takes_part) candidates.push_back(&object);
+  }
+  const auto any = [](const auto& list, auto holds) { return std::any_of(list.begin(), list.end(), holds); };
+  if (objects.empty()) return NothingToTest::no_objects;
+  if (candidates.empty())
+    return any(objects, [](const TestableObject& object) { return object.has_elements; })
+               ? NothingToTest::not_finite
+               : NothingToTest::no_elements;
+  const auto any_candidate = [&](auto member) {
+    return any(candidates, [&](const TestableObject* object) { return object->*member; });
+  };
+  if (!any_candidate(&TestableObject::has_quality)) return lack_of_quality(kind);
+  if (any(candidates, [](const TestableObject* object) {
+        return object->has_quality && object->may_touch_itself && object->has_separate_elements;
+      }))
+    return std::nullopt;
+  if (candidates.size() == 1) {
+    if (!candidates[0]->tests_itself) return NothingToTest::one_object;
+    return candidates[0]->may_touch_itself ? NothingToTest::shared_vertex : NothingToTest::groups;
+  }
+  if (!any(candidates, [](const TestableObject* object) { return !object->is_static; }))
+    return NothingToTest::all_static;
+  PairableObjects pairable;
+  bool is_pairable = false;
+  for (const TestableObject* const object : candidates) is_pairable = pairable.add(*object) || is_pairable;
+  if (!is_pairable || !any_pair(candidates, [](const auto&, const auto&) { return true; }))
+    return NothingToTest::groups;
+  if (filter &&
+      !any_pair(candidates, [&](const auto& a, const auto& b) { return filter(a.id, b.id); }))
+    return NothingToTest::filter;
+  return std::nullopt;
+}
+
 std::optional<NothingToTest> UntestedKinds::nothing_to_test(const World& world, const Question& question,
                                                             ContactKinds kind) {
-  const TestedElements tested(kind, question.impact.kinds);
-  PairableObjects pairable(kind);
-  bool has_objects = false, has_elements = false, is_pairable = false, has_vertex_groups = false;
-  candidates_.clear();
+  PairableObjects pairable;
+  bool has_vertex_groups = false;
+  objects_.clear();
   for (std::uint32_t slot = 0; slot < world.slot_count(); ++slot) {
     const WorldObject* const object = world.at(slot);
     if (object == nullptr) continue;
-    has_objects = true;
-    if (tested.next(*object, 0) == tested.count(*object)) {
-      has_elements = has_elements || tested.has_any(*object);
-      continue;
-    }
-    candidates_.push_back(slot);
-    has_vertex_groups = has_vertex_groups || !object->vertex_groups().empty();
-    is_pairable = pairable.add(*object) || is_pairable;
-    if (is_pairable && !question.has_filter(world) && !has_vertex_groups) return std::nullopt;
+    objects_.push_back(testable_object(kind, question.impact.kinds, *object, world.id_of(slot),
+                                       question.tests_itself(world, slot)));
+    has_vertex_groups = has_vertex_groups || objects_.back().has_vertex_groups;
+    if (pairable.add(objects_.back()) && !question.has_filter(world) && !has_vertex_groups)
+      return std::nullopt;
   }
-  if (!has_objects) return NothingToTest::no_objects;
-  if (candidates_.empty()) return has_elements ? NothingToTest::not_finite : NothingToTest::no_elements;
-  const auto any_of_candidates = [&](auto holds) {
-    return std::any_of(candidates_.begin(), candidates_.end(), holds);
-  };
-  if (!any_of_candidates([&](std::uint32_t slot) { return has_quality(kind, world[slot]); }))
-    return lack_of_quality(kind);
-  const auto is_tested_alone = [&](std::uint32_t slot) { return question.tests_itself(world, slot); };
-  const bool tests_itself = kind != ContactKinds::penetration && any_of_candidates(is_tested_alone);
-  if (tests_itself && any_of_candidates([&](std::uint32_t slot) {
-        const WorldObject& object = world[slot];
-        return is_tested_alone(slot) && has_quality(kind, object) && may_touch_itself(object) &&
-               (tested.has_edges_and_points ? has_separate_elements(object, tested)
-                                            : has_separate_triangles(object, tested));
-      }))
-    return std::nullopt;
-  if (candidates_.size() == 1) {
-    if (!tests_itself) return NothingToTest::one_object;
-    return any_of_candidates([&](std::uint32_t slot) { return may_touch_itself(world[slot]); })
-               ? NothingToTest::shared_vertex
-               : NothingToTest::groups;
-  }
-  if (!any_of_candidates([&](std::uint32_t slot) { return !world[slot].options.is_static; }))
-    return NothingToTest::all_static;
-  const auto may_touch = [&](const IndexPair&, const WorldObject& a, const WorldObject& b) {
-    return !has_vertex_groups || vertex_group_pairs(a).accept(vertex_group_pairs(b));
-  };
-  if (!is_pairable || !any_candidate_pair(world, kind, may_touch)) return NothingToTest::groups;
-  const auto is_accepted = [&](const IndexPair& pair, const WorldObject& a, const WorldObject& b) {
-    return may_touch(pair, a, b) && question.may_pair(world, pair);
-  };
-  if (!any_candidate_pair(world, kind, is_accepted)) return NothingToTest::filter;
-  return std::nullopt;
+  PairFilter filter;
+  if (question.has_filter(world))
+    filter = [&](ObjectId a, ObjectId b) { return question.may_pair(world, {a.index, b.index}); };
+  return supple::nothing_to_test(kind, objects_, filter);
 }
 
 std::span<const UntestedKind> UntestedKinds::list(const World& world, const Question& question,
                                                   const DetectResult& found) {
   untested_.clear();
-  const auto list = [&](ContactKinds kind, bool has_contacts) {
-    if (!contains(question.contacts, kind) || has_contacts) return;
+  for_each_kind_without_contacts(question.contacts, found, [&](ContactKinds kind) {
     if (const auto reason = nothing_to_test(world, question, kind)) untested_.push_back({kind, *reason});
-  };
-  list(ContactKinds::intersection, !found.groups.empty());
-  list(ContactKinds::continuous, !found.continuous_groups.empty());
-  list(ContactKinds::proximity, !found.proximity_groups.empty());
-  list(ContactKinds::penetration, !found.penetration_groups.empty() || !found.contained_parts.empty());
+  });
   return untested_;
 }
 

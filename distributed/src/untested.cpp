@@ -1,0 +1,100 @@
+// The kinds of contacts that had nothing to test. Most steps only need to know that two objects may touch, which
+// the groups of all objects tell. Otherwise the first home of each object gets it whole, and rank 0 decides.
+
+#include "answers/untested.hpp"
+
+#include <algorithm>
+
+#include "core/sort_once.hpp"
+#include "distributed_implementation.hpp"
+
+namespace supple {
+
+/// Collective: whether two objects on any ranks may touch, at least by what each home knows of its part.
+bool DistributedScene::Implementation::has_pair_to_test(ContactKinds kind) {
+  bool has_filter_or_groups = static_cast<bool>(filter);
+  std::vector<TestableObject> objects;
+  PairableObjects own, earlier;
+  for (const auto& [id, object] : homes_) {
+    has_filter_or_groups = has_filter_or_groups || object.has_vertex_groups();
+    if (object.first_home != ranks.rank()) continue;
+    const ObjectOptions& of = object.options;
+    objects.push_back({.id = id,
+                       .takes_part = object.has_finite_face(),
+                       .has_quality = (kind != ContactKinds::continuous || object.has_motion()) &&
+                                      (kind != ContactKinds::proximity || of.margin > 0) &&
+                                      (kind != ContactKinds::penetration || of.solid),
+                       .is_static = of.is_static,
+                       .group = of.group,
+                       .mask = of.mask});
+    own.add(objects.back());
+  }
+  MPI_Exscan(&own, &earlier, static_cast<int>(sizeof own / sizeof(std::uint32_t)), MPI_UINT32_T, MPI_BOR,
+             ranks.handle());
+  if (ranks.rank() == 0) earlier = {};
+  bool has_pair = false;
+  for (const TestableObject& object : objects) has_pair = earlier.add(object) || has_pair;
+  return ranks.any(has_pair) && !ranks.any(has_filter_or_groups);
+}
+
+/// What this rank knows of an object that it has whole.
+TestableObject DistributedScene::Implementation::testable(ContactKinds kind, const HomeObject& object) {
+  TestableObject found{.id = object.id};
+  if (const auto local = local_.local_object(object.id)) {
+    found = testable_object(kind, question_.impact.kinds, world()[local->index], object.id,
+                            object.options.self_collision);
+  }
+  // The world has no static objects, and solids only where a search needs them.
+  found.is_static = object.options.is_static;
+  if (kind == ContactKinds::penetration) found.has_quality = object.options.solid;
+  return found;
+}
+
+/// Collective: the requested kinds that found nothing and had nothing to test; the same on all ranks.
+void DistributedScene::Implementation::list_untested() {
+  untested_.clear();
+  std::vector<double> counts{double(lists_.contacts.size()), double(lists_.continuous_contacts.size()),
+                             double(lists_.proximity_pairs.size()),
+                             double(lists_.penetration_groups.size() + lists_.contained_parts.size())};
+  ranks.largest(counts);
+  const ContactKinds kinds[] = {ContactKinds::intersection, ContactKinds::continuous, ContactKinds::proximity,
+                                ContactKinds::penetration};
+  std::vector<ContactKinds> open;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (contains(question_.contacts, kinds[k]) && counts[k] == 0 && !has_pair_to_test(kinds[k]))
+      open.push_back(kinds[k]);
+  }
+  if (open.empty()) return;
+  by_objects_ = true;
+  needed_.clear();
+  tested_.clear();
+  for (const auto& [id, object] : homes_) {
+    for (const int home : object.homes) needed_.push_back({{id, home, 0, all_clusters}, 0});
+  }
+  sort_once(needed_);
+  fetch_clusters();
+  for (const ContactKinds kind : open) {
+    outbox_.clear();
+    ranks.together([&] {
+      for (const auto& [id, object] : homes_) {
+        if (object.first_home == ranks.rank()) outbox_.to(0).put(testable(kind, object));
+      }
+    });
+    ranks.exchange(outbox_, inbox_);
+    int reason = -1;
+    ranks.together([&] {
+      std::vector<TestableObject> objects;
+      inbox_.for_each([&](Reader& from, int) {
+        while (!from.is_done()) objects.push_back(from.get<TestableObject>());
+      });
+      std::sort(objects.begin(), objects.end(),
+                [](const TestableObject& p, const TestableObject& q) { return p.id < q.id; });
+      if (ranks.rank() != 0) return;
+      if (const auto found = nothing_to_test(kind, objects, filter)) reason = static_cast<int>(*found);
+    });
+    MPI_Bcast(&reason, 1, MPI_INT, 0, ranks.handle());
+    if (reason >= 0) untested_.push_back({kind, static_cast<NothingToTest>(reason)});
+  }
+}
+
+}  // namespace supple
