@@ -10,6 +10,8 @@
 #include "commands/info.hpp"
 #include "commands/simulate.hpp"
 #include "commands/view.hpp"
+#include "moving/launcher.hpp"
+#include "moving/ranks.hpp"
 #include "options/options.hpp"
 #include "query/ccd_queries.hpp"
 #include "query/query.hpp"
@@ -19,11 +21,12 @@ namespace supple::cli {
 namespace {
 
 int run(const CommandLine& line) {
+  Ranks one;
   switch (line.command) {
     case CommandLine::Command::detect:
-      return run_detect(line.detect);
+      return run_detect(line.detect, one);
     case CommandLine::Command::simulate:
-      return run_simulate(line.simulate);
+      return run_simulate(line.simulate, one);
     case CommandLine::Command::view:
       return run_view(line.view);
     case CommandLine::Command::info:
@@ -61,6 +64,7 @@ int run(const CommandLine& line) {
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
   return run_program([&] {
+    if (const LaunchedProcess process = launched_process(); process.size > 1) run_as_rank(process, arguments);
     const std::string_view first = argument_count > 1 ? arguments[1] : "";
     if (first == "experiment") run_experiments(arguments + 1);
     // The documents describe the options of all commands, also those of experiments.

@@ -184,7 +184,7 @@ class Soak {
   }
 
   void begin_recording() {
-    if (!options_.record.empty()) recorder_.emplace(options_.record, simulation_, input_);
+    if (!options_.record.empty()) recorder_.emplace(options_.record, simulation_.scene().objects(), input_);
     recorded_ = 0;
   }
 
@@ -192,7 +192,8 @@ class Soak {
   void record(const DetectResult& result) {
     if (!recorder_) return;
     if (frame_ % options_.row_every == 0) check_disk();
-    recorder_->add(result);
+    recorder_->add(
+        simulation_.time(), [this](ObjectId object) { return simulation_.positions(object); }, result);
     if (++recorded_ < options_.record_frames) return;
     end_recording();
     begin_recording();

@@ -102,6 +102,10 @@ int Interruption::signal() const {
   return received;
 }
 
+void Interruption::set_signal(int signal) {
+  received = signal;
+}
+
 bool Interruption::is_late() const {
   return deadline_ && Clock::now() >= *deadline_;
 }

@@ -26,6 +26,8 @@ class Interruption {
 
   /// The number of the received signal, or 0.
   int signal() const;
+  /// Another process of the run has received it.
+  void set_signal(int signal);
   bool is_late() const;
   bool is_requested() const { return signal() != 0 || is_late(); }
   std::stop_token token() const { return source_.get_token(); }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -15,9 +16,9 @@
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
-#include "inputs/half_turns.hpp"
 #include "inputs/inputs.hpp"
 #include "inputs/recorded_input.hpp"
+#include "moving/run_of_rank.hpp"
 #include "options/option_needs.hpp"
 #include "reports/reports.hpp"
 #include "supple/error.hpp"
@@ -68,64 +69,84 @@ bool is_one_mesh(const std::vector<std::string>& inputs, const Input& input) {
   return input.objects.size() == 1 && !is_scene_file(inputs.front()) && !is_recording(inputs.front());
 }
 
-}  // namespace
-
-int run_detect(const DetectOptions& options) {
+/// Reads the input, with the options of the command line.
+Input read_input(const DetectOptions& options, Ranks& ranks) {
   MeshReading reading = options.reading;
   if (!is_recording(options.inputs.front())) reading.clips.frames = options.frames;
   Input input = options.sequence ? read_sequence(options.inputs, reading.conversion)
                                  : read_objects(options.inputs, {}, reading);
-  print_notes(input);
+  if (ranks.rank() == 0) print_notes(input);
   check_output_names({{"--json", options.json}, {"--csv", options.csv}}, input.files);
   apply(options, input);
   if (is_one_mesh(options.inputs, input) && has_proximity(options.scene))
     input.objects.front().options.self_collision = true;
-  const std::uint64_t frames = count_frames(input, options);
-  warn_of_missing_threads(options.scene.threads);
+  ranks.check(options, input);
+  return input;
+}
+
+}  // namespace
+
+int run_detect(const DetectOptions& given, Ranks& ranks) {
+  const DetectOptions options = options_of_rank(given, ranks);
+  Input input;
+  std::uint64_t frames = 0;
+  ranks.together([&] {
+    input = read_input(options, ranks);
+    frames = count_frames(input, options);
+  });
+  if (ranks.size() == 1) warn_of_missing_threads(options.scene.threads);
   const bool prints_text = !options.quiet && options.json != "-" && options.csv != "-";
   if (options.sequence && prints_text) {
     if (const std::string gaps = describe_gaps(input.files); !gaps.empty()) fmt::print("{}\n", gaps);
   }
-  Simulation simulation = build_simulation(input);
+  const std::unique_ptr<MovingObjects> objects = ranks.move(input, false);
 
   // Continuous contacts are found between the previous frame and this frame, so the first frame has none.
   const bool continuous = contains(options.scene.contacts, ContactKinds::continuous);
   const std::uint64_t first = options.scene.contacts == ContactKinds::continuous && frames > 1 ? 1 : 0;
   const char* const noun = continuous ? "step" : "frame";
-  Reports reports(options, input, simulation.scene(), noun);
-  std::optional<HalfTurns> turns;
-  if (continuous) turns.emplace(simulation, input);
+  std::optional<Reports> reports;
+  ranks.together([&] { reports.emplace(options, input, *objects, noun); });
   std::uint64_t done = 0;
   const auto end_early = [&](const Interruption& end) {
-    reports.finish(true);
+    reports->finish(true);
+    if (ranks.rank() != 0) return static_cast<int>(exit_done);
     const std::string place = fmt::format("{} of {}", grouped(done), counted(frames - first, noun));
     return report_end(end, options.limits.seconds, place,
-                      end.signal() != 0 ? exit_done : reports.exit_status());
+                      end.signal() != 0 ? exit_done : reports->exit_status());
   };
-  Interruption interruption(options.limits.seconds,
-                            [&](const Interruption& end) { exit_now(end_early(end)); });
+  Interruption interruption(options.limits.seconds, [&](const Interruption& end) {
+    if (ranks.size() == 1) exit_now(end_early(end));
+  });
   {
     Progress progress(frames - first, !options.quiet, noun);
-    for (std::uint64_t number = first; number < frames && !interruption.is_requested(); ++number) {
+    for (std::uint64_t number = first; number < frames && !is_ended(interruption, ranks); ++number) {
       const bool is_start = number == 0 && !(continuous && frames == 1);
       const DetectRequest request{.max_contacts = options.limits.max_contacts, .stop = interruption.token()};
-      if (turns) turns->remember_positions();
-      Frame frame{number, is_start ? simulation.detect(request) : simulation.step(request)};
+      if (continuous) objects->remember_positions();
+      Frame frame{number, is_start ? objects->detect(request) : objects->step(request)};
       if (frame.result.stopped) break;
-      if (turns) frame.turned = turns->find();
+      if (continuous) frame.turned = objects->turned();
       if (options.verify && !(is_start && continuous))
-        frame.verify = simulation.scene().verify({interruption.token()});
+        frame.verify = objects->scene().verify({interruption.token()});
       if (interruption.token().stop_requested() && frame.verify) break;
       const auto hold = interruption.hold();
-      reports.add(frame);
+      ranks.together([&] { reports->add(frame); });
       done = number - first + 1;
       progress.update(done, fmt::format("{} {} of {}", noun, done, frames - first));
     }
   }
   interruption.end();
-  if (done < frames - first) return end_early(interruption);
-  reports.finish();
-  return reports.exit_status();
+  int status = exit_done;
+  ranks.together([&] {
+    if (done < frames - first) {
+      status = end_early(interruption);
+    } else {
+      reports->finish();
+      status = reports->exit_status();
+    }
+  });
+  return status;
 }
 
 }  // namespace supple::cli

@@ -17,32 +17,25 @@ void print_row(const std::string& name, double start, const MassSpringEnergy& en
 
 }  // namespace
 
-EnergyTable::EnergyTable(const Simulation& simulation) {
-  for (const ObjectId object : simulation.scene().objects()) {
-    if (const MassSpringBody* const body = simulation.body(object))
-      rows_.push_back({object, body->energy().total()});
-  }
-}
-
-void EnergyTable::print(const Simulation& simulation) const {
-  if (rows_.empty()) return;
+void EnergyTable::print() const {
+  if (end_.empty()) return;
   fmt::print("\n{:<20} {:>13} {:>13} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "energy, J", "at the start",
              "at the end", "kinetic", "elastic", "area", "volume", "gravity");
   double all_at_start = 0;
   MassSpringEnergy all;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const MassSpringEnergy energy = simulation.body(rows_[i].object)->energy();
-    all_at_start += rows_[i].total_at_start;
+  for (std::size_t i = 0; i < end_.size(); ++i) {
+    const MassSpringEnergy& energy = end_[i].energy;
+    const double at_start = start_[i].energy.total();
+    all_at_start += at_start;
     all.kinetic += energy.kinetic;
     all.elastic += energy.elastic;
     all.area += energy.area;
     all.volume += energy.volume;
     all.gravity += energy.gravity;
-    if (i < most_rows)
-      print_row(name_of(simulation.scene(), rows_[i].object), rows_[i].total_at_start, energy);
+    if (i < most_rows) print_row(name_of(input_, end_[i].object), at_start, energy);
   }
-  if (rows_.size() > most_rows) fmt::print("and {} more\n", counted(rows_.size() - most_rows, "object"));
-  if (rows_.size() > 1) print_row("all", all_at_start, all);
+  if (end_.size() > most_rows) fmt::print("and {} more\n", counted(end_.size() - most_rows, "object"));
+  if (end_.size() > 1) print_row("all", all_at_start, all);
 }
 
 }  // namespace supple::cli

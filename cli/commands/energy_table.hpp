@@ -1,25 +1,26 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
-#include "supple/simulation.hpp"
+#include "inputs/inputs.hpp"
+#include "moving/moving_objects.hpp"
 
 namespace supple::cli {
 
-/// A table of the energy of each body of masses and springs, at its construction and when it is printed.
+/// A table of the energy of each body of masses and springs at the start and at the end.
 class EnergyTable {
  public:
-  explicit EnergyTable(const Simulation& simulation);
+  explicit EnergyTable(const Input& input) : input_(input) {}
 
+  void start(std::vector<BodyEnergy> energies) { start_ = std::move(energies); }
+  void end(std::vector<BodyEnergy> energies) { end_ = std::move(energies); }
   /// Prints to standard output; prints nothing when there is no such body.
-  void print(const Simulation& simulation) const;
+  void print() const;
 
  private:
-  struct Row {
-    ObjectId object;
-    double total_at_start = 0;
-  };
-  std::vector<Row> rows_;
+  const Input& input_;
+  std::vector<BodyEnergy> start_, end_;  ///< of the same bodies
 };
 
 }  // namespace supple::cli

@@ -5,12 +5,11 @@
 namespace supple::cli {
 namespace {
 
-RecordingHeader header_of(const Simulation& simulation, const Input& input) {
+RecordingHeader header_of(const std::vector<ObjectId>& objects, const Input& input) {
   RecordingHeader header;
-  header.time_step = simulation.options().time_step;
-  header.scene = simulation.options().scene;
+  header.time_step = input.simulation.time_step;
+  header.scene = input.simulation.scene;
   header.scene_file = input.scene_text;
-  const std::vector<ObjectId> objects = simulation.scene().objects();
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const InputObject& object = input.objects[i];
     ObjectOptions options = object.options;
@@ -23,16 +22,17 @@ RecordingHeader header_of(const Simulation& simulation, const Input& input) {
 
 }  // namespace
 
-FrameRecorder::FrameRecorder(const std::string& file_name, const Simulation& simulation, const Input& input)
-    : simulation_(simulation), objects_(simulation.scene().objects()) {
-  if (!file_name.empty()) recorder_.emplace(file_name, header_of(simulation, input));
+FrameRecorder::FrameRecorder(const std::string& file_name, std::vector<ObjectId> objects, const Input& input)
+    : objects_(std::move(objects)) {
+  if (!file_name.empty()) recorder_.emplace(file_name, header_of(objects_, input));
 }
 
-void FrameRecorder::add(const DetectResult& result) {
+void FrameRecorder::add(double time, const std::function<std::span<const Vec3d>(ObjectId)>& positions,
+                        const DetectResult& result) {
   if (!recorder_) return;
   positions_.clear();
-  for (const ObjectId object : objects_) positions_.push_back(simulation_.positions(object));
-  recorder_->add(simulation_.time(), positions_, result);
+  for (const ObjectId object : objects_) positions_.push_back(positions(object));
+  recorder_->add(time, positions_, result);
 }
 
 void FrameRecorder::close() {

@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/exit_status.hpp"
 #include "base/interruption.hpp"
@@ -20,10 +22,9 @@
 #include "commands/build_simulation.hpp"
 #include "commands/energy_table.hpp"
 #include "commands/frame_recorder.hpp"
-#include "inputs/half_turns.hpp"
 #include "inputs/inputs.hpp"
+#include "moving/run_of_rank.hpp"
 #include "reports/reports.hpp"
-#include "session/messages/long_steps.hpp"
 #include "supple/error.hpp"
 
 namespace supple::cli {
@@ -52,18 +53,25 @@ std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
   return static_cast<std::uint64_t>(is_whole ? whole : std::ceil(steps));
 }
 
+std::vector<ObjectId> ids_of(const Input& input) {
+  std::vector<ObjectId> ids(input.objects.size());
+  for (std::uint32_t i = 0; i < ids.size(); ++i) ids[i].index = i;
+  return ids;
+}
+
 /// A running simulation and its reports.
 class Run {
  public:
-  Run(const SimulateOptions& options, const Input& input)
+  Run(const SimulateOptions& options, const Input& input, Ranks& ranks, MovingObjects& objects)
       : options_(options),
-        steps_(count_steps(options, input.simulation.time_step)),
-        simulation_(build_simulation(input)),
-        reports_(options, input, simulation_.scene(), "frame"),
-        recorder_(options.record, simulation_, input),
-        energies_(simulation_) {
-    if (contains(options.scene.contacts, ContactKinds::continuous)) turns_.emplace(simulation_, input);
-  }
+        time_step_(input.simulation.time_step),
+        steps_(count_steps(options, time_step_)),
+        is_continuous_(contains(options.scene.contacts, ContactKinds::continuous)),
+        ranks_(ranks),
+        objects_(objects),
+        reports_(options, input, objects, "frame"),
+        recorder_(options.record, ids_of(input), input),
+        energies_(input) {}
 
   /// Runs until the last step, an interruption or a blow-up. Returns the exit status.
   int go();
@@ -79,68 +87,81 @@ class Run {
   static DetectRequest request_of(const Interruption& interruption) { return {.stop = interruption.token()}; }
 
   const SimulateOptions& options_;
+  double time_step_;
   std::uint64_t steps_;
-  Simulation simulation_;
+  bool is_continuous_;
+  Ranks& ranks_;
+  MovingObjects& objects_;
   Reports reports_;
   FrameRecorder recorder_;
   EnergyTable energies_;
-  std::optional<HalfTurns> turns_;
   Clock::time_point start_ = Clock::now();
   std::uint64_t frames_ = 0;  ///< that were added
   double time_ = 0;           ///< simulated, s, of the last of them
 };
 
 int Run::go() {
-  if (const auto warning = viewer::warning_of_long_steps(simulation_))
+  energies_.start(objects_.energies());
+  if (const auto warning = objects_.warning_of_long_steps(); warning && ranks_.rank() == 0)
     fmt::print(stderr, "supple: warning: {}: {}\n", one_line(options_.input), one_line(*warning));
-  Interruption interruption(options_.limits.seconds,
-                            [this](const Interruption& end) { exit_now(end_early(end, Moment::in_a_step)); });
+  Interruption interruption(options_.limits.seconds, [this](const Interruption& end) {
+    if (ranks_.size() == 1) exit_now(end_early(end, Moment::in_a_step));
+  });
   start_ = Clock::now();
   const bool is_whole =
-      !interruption.is_requested() && add_frame(interruption, simulation_.detect(request_of(interruption)));
+      !is_ended(interruption, ranks_) && add_frame(interruption, objects_.detect(request_of(interruption)));
   const bool stable = !is_whole || take_steps(interruption);
   interruption.end();
-  if (stable && frames_ < steps_ + 1) return end_early(interruption, Moment::between_steps);
-  finish(false);
-  if (reports_.has_tables()) energies_.print(simulation_);
-  return stable ? reports_.exit_status() : exit_unusable;
+  energies_.end(objects_.energies());
+  int status = exit_unusable;
+  ranks_.together([&] {
+    if (stable && frames_ < steps_ + 1) {
+      status = end_early(interruption, Moment::between_steps);
+      return;
+    }
+    finish(false);
+    if (reports_.has_tables()) energies_.print();
+    if (stable) status = reports_.exit_status();
+  });
+  return status;
 }
 
 /// False when the motion blew up.
 bool Run::take_steps(Interruption& interruption) {
   Progress progress(steps_, !options_.quiet, "step");
   std::optional<std::string> fault;
-  while (simulation_.step_count() < steps_ && !interruption.is_requested()) {
-    if (turns_) turns_->remember_positions();
+  while (objects_.step_count() < steps_ && !is_ended(interruption, ranks_)) {
+    if (is_continuous_) objects_.remember_positions();
     try {
-      if (!add_frame(interruption, simulation_.step(request_of(interruption)))) break;
+      if (!add_frame(interruption, objects_.step(request_of(interruption)))) break;
     } catch (const MotionError& error) {
       fault = error.what();
       break;
     }
-    const std::uint64_t done = simulation_.step_count();
+    const std::uint64_t done = objects_.step_count();
     progress.update(done, fmt::format("step {} of {}", done, steps_));
   }
-  if (fault) fmt::print(stderr, "supple: {}: {}\n", one_line(options_.input), *fault);
+  if (fault && ranks_.rank() == 0) fmt::print(stderr, "supple: {}: {}\n", one_line(options_.input), *fault);
   return !fault;
 }
 
 bool Run::add_frame(Interruption& interruption, const DetectResult& result) {
   if (result.stopped) return false;
-  const std::uint64_t number = simulation_.step_count();
+  const std::uint64_t number = objects_.step_count();
   Frame frame{number, result};
-  frame.simulated = {simulation_.time(), number == 0 ? 0 : simulation_.motion_seconds()};
-  if (turns_ && number > 0) frame.turned = turns_->find();
-  const bool is_start_of_continuous =
-      number == 0 && contains(options_.scene.contacts, ContactKinds::continuous);
-  if (options_.verify && !is_start_of_continuous)
-    frame.verify = simulation_.scene().verify({interruption.token()});
+  frame.simulated = {objects_.time(), number == 0 ? 0 : objects_.motion_seconds()};
+  if (is_continuous_ && number > 0) frame.turned = objects_.turned();
+  if (options_.verify && !(number == 0 && is_continuous_))
+    frame.verify = objects_.scene().verify({interruption.token()});
   if (frame.verify && interruption.token().stop_requested()) return false;
   const auto hold = interruption.hold();
-  recorder_.add(result);
-  reports_.add(frame);
+  ranks_.together([&] {
+    recorder_.add(
+        objects_.time(), [this](ObjectId object) { return objects_.positions(object); }, result);
+    reports_.add(frame);
+  });
   frames_ = number + 1;
-  time_ = simulation_.time();
+  time_ = objects_.time();
   return true;
 }
 
@@ -150,15 +171,16 @@ void Run::finish(bool was_ended) {
     const double seconds = std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 0.0);
     const auto steps = static_cast<double>(frames_ - 1);
     fmt::print("{} of {} s: {:.6g} s simulated in {:.3g} s, {:.3g} steps/s\n", counted(frames_ - 1, "step"),
-               simulation_.options().time_step, time_, seconds, seconds > 0 ? steps / seconds : 0);
+               time_step_, time_, seconds, seconds > 0 ? steps / seconds : 0);
   }
   reports_.finish(was_ended);
 }
 
 int Run::end_early(const Interruption& interruption, Moment moment) {
   finish(true);
+  if (ranks_.rank() != 0) return exit_done;
   // In a step, another thread changes the simulation.
-  if (reports_.has_tables() && moment == Moment::between_steps) energies_.print(simulation_);
+  if (reports_.has_tables() && moment == Moment::between_steps) energies_.print();
   std::string place = fmt::format("{} of {}, {:.6g} s", grouped(frames_ == 0 ? 0 : frames_ - 1),
                                   counted(steps_, "step"), time_);
   if (!options_.record.empty())
@@ -169,20 +191,29 @@ int Run::end_early(const Interruption& interruption, Moment moment) {
 
 }  // namespace
 
-int run_simulate(const SimulateOptions& options) {
-  Input input = read_input(options);
-  print_notes(input);
-  std::string xdmf;
-  if (!options.record.empty())
-    xdmf = std::filesystem::path(options.record).replace_extension(".xdmf").string();
-  check_output_names({{"--json", options.json},
-                      {"--csv", options.csv},
-                      {"--record", options.record},
-                      {"the .xdmf file of --record", xdmf}},
-                     input.files);
-  apply(options, input);
-  warn_of_missing_threads(options.scene.threads);
-  return Run(options, input).go();
+int run_simulate(const SimulateOptions& given, Ranks& ranks) {
+  SimulateOptions options = options_of_rank(given, ranks);
+  if (ranks.rank() != 0) options.record.clear();
+  Input input;
+  ranks.together([&] {
+    input = read_input(options);
+    if (ranks.rank() == 0) print_notes(input);
+    std::string xdmf;
+    if (!options.record.empty())
+      xdmf = std::filesystem::path(options.record).replace_extension(".xdmf").string();
+    check_output_names({{"--json", options.json},
+                        {"--csv", options.csv},
+                        {"--record", options.record},
+                        {"the .xdmf file of --record", xdmf}},
+                       input.files);
+    apply(options, input);
+    ranks.check(options, input);
+  });
+  if (ranks.size() == 1) warn_of_missing_threads(options.scene.threads);
+  const std::unique_ptr<MovingObjects> objects = ranks.move(input, !given.record.empty());
+  std::optional<Run> run;
+  ranks.together([&] { run.emplace(options, input, ranks, *objects); });
+  return run->go();
 }
 
 }  // namespace supple::cli

@@ -184,6 +184,16 @@ Input read_meshes(const std::vector<std::string>& names, const MeshReading& read
 
 }  // namespace
 
+std::string Input::name(ObjectId object) const {
+  const InputObject& found = objects[object.index];
+  if (!found.options.name.empty()) return found.options.name;
+  return found.mesh.name.empty() ? fmt::format("object {}", object.index) : found.mesh.name;
+}
+
+std::string name_of(const Input& input, ObjectId object) {
+  return fmt::format("{} {}", object.index, one_line(input.name(object)));
+}
+
 std::string clips_note(const fs::path& path, const std::vector<std::string>& clips, const char* advice) {
   return one_line(fmt::format("{}: has {}: {}; {}", path.string(), counted(clips.size(), "clip"),
                               fmt::join(clips, ", "), advice));

@@ -68,6 +68,9 @@ struct Input {
   std::string scene_text;                    ///< of the scene file; empty when there is none
   std::vector<std::filesystem::path> files;  ///< all that were read or will be read
   std::vector<std::string> notes{};          ///< what users should know about the files, for standard error
+
+  /// The name of an object in results.
+  std::string name(ObjectId object) const;
 };
 
 bool is_scene_file(const std::string& name);
@@ -81,6 +84,8 @@ Input read_sequence(const std::vector<std::string>& names, const CoordinateConve
 /// `walk.glb: has 2 clips: walk, run; ` and the advice.
 std::string clips_note(const std::filesystem::path& path, const std::vector<std::string>& clips,
                        const char* advice);
+/// The number and name of an object, for tables.
+std::string name_of(const Input& input, ObjectId object);
 /// Prints the notes of an input to standard error.
 void print_notes(const Input& input);
 

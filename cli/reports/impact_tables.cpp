@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "inputs/inputs.hpp"
 
 namespace supple::cli {
 
@@ -31,13 +32,13 @@ void ImpactTables::add(const Frame& step) {
   if (steps_.size() < most_rows) steps_.push_back(row);
 }
 
-void ImpactTables::print(const Scene& scene) const {
+void ImpactTables::print(const Input& input) const {
   if (pairs_.empty()) {
     fmt::print("Nothing touches.\n\n");
     return;
   }
   print_steps();
-  print_pairs(scene);
+  print_pairs(input);
   if (within_tolerance_ > 0)
     fmt::print("{} of them within tolerance only: floating point cannot decide whether they touch\n\n",
                grouped(within_tolerance_));
@@ -55,7 +56,7 @@ void ImpactTables::print_steps() const {
   fmt::print("\n");
 }
 
-void ImpactTables::print_pairs(const Scene& scene) const {
+void ImpactTables::print_pairs(const Input& input) const {
   std::vector<std::pair<ObjectPair, Pair>> rows(pairs_.begin(), pairs_.end());
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
     const std::uint64_t contacts_x = x.second.counts.all(), contacts_y = y.second.counts.all();
@@ -67,8 +68,8 @@ void ImpactTables::print_pairs(const Scene& scene) const {
     const auto& [pair, summary] = rows[i];
     contacts += summary.counts.all();
     if (i >= most_rows) continue;
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", name_of(scene, pair.a),
-               pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(summary.steps),
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16}\n", name_of(input, pair.a),
+               pair.a == pair.b ? "itself" : name_of(input, pair.b), grouped(summary.steps),
                grouped(summary.counts.vertex_face), grouped(summary.counts.edge_edge));
   }
   if (rows.size() > most_rows)

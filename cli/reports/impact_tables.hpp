@@ -6,16 +6,17 @@
 #include <vector>
 
 #include "reports/report.hpp"
-#include "supple/scene.hpp"
 
 namespace supple::cli {
+
+struct Input;
 
 /// Tables of continuous contacts: their number and earliest time per step, and the objects that touch.
 class ImpactTables {
  public:
   void add(const Frame& step);
   /// Prints to standard output.
-  void print(const Scene& scene) const;
+  void print(const Input& input) const;
 
  private:
   struct Counts {
@@ -36,7 +37,7 @@ class ImpactTables {
   };
 
   void print_steps() const;
-  void print_pairs(const Scene& scene) const;
+  void print_pairs(const Input& input) const;
 
   std::vector<Step> steps_;  ///< the first that have contacts
   std::uint64_t steps_with_contacts_ = 0;

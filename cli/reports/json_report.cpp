@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "inputs/inputs.hpp"
+#include "moving/moving_objects.hpp"
 #include "reports/node_pair_report.hpp"
 #include "reports/record_json.hpp"
 #include "reports/result_json.hpp"
@@ -116,20 +117,20 @@ void write_verify(JsonWriter& json, const char* name, std::pair<const char*, std
 
 }  // namespace
 
-JsonReport::JsonReport(const std::string& file_name, const Input& input, const Scene& scene,
+JsonReport::JsonReport(const std::string& file_name, const Input& input, const MovingObjects& objects,
                        const JsonContent& content)
-    : json_(file_name), input_(input), scene_(scene), content_(content) {
+    : json_(file_name), input_(input), objects_(objects), content_(content) {
   json_.begin_object();
   json_.member("supple", std::string(SUPPLE_VERSION));
   if (content_.stats) write_options(json_, input_.simulation.scene);
   json_.key("objects");
   json_.begin_array();
-  const std::vector<ObjectId> objects = scene.objects();
-  for (std::size_t i = 0; i < objects.size(); ++i) {
+  for (std::size_t i = 0; i < input.objects.size(); ++i) {
+    const TriangleMesh& mesh = input.objects[i].mesh;
     json_.begin_object();
-    json_.member("name", scene.name(objects[i]));
-    json_.member("vertices", std::uint64_t{scene.vertex_count(objects[i])});
-    json_.member("triangles", std::uint64_t{scene.triangle_count(objects[i])});
+    json_.member("name", input.name(ObjectId{static_cast<std::uint32_t>(i)}));
+    json_.member("vertices", std::uint64_t{mesh.positions.size()});
+    json_.member("triangles", std::uint64_t{mesh.triangles.size()});
     if (content_.stats) write_options(json_, input_.objects[i].options);
     if (content_.faces) write_faces(json_, input_.objects[i].mesh.triangles);
     if (input_.objects[i].part) write_part(json_, *input_.objects[i].part);
@@ -189,7 +190,7 @@ void JsonReport::add(const Frame& frame) {
   if (penetration) write_penetration(json_, result, content_.contact_details);
   if (options.manifolds) write_manifolds(json_, result);
   if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
-  if (content_.node_pairs) write_node_pairs(json_, scene_, *content_.node_pairs);
+  if (content_.node_pairs) write_node_pairs(json_, objects_.scene(), *content_.node_pairs);
   json_.key("events");
   json_.begin_object();
   write_events(json_, "volumes", result.volume_events);

@@ -5,16 +5,16 @@
 #include "base/json_writer.hpp"
 #include "options/json_content.hpp"
 #include "reports/report.hpp"
-#include "supple/scene.hpp"
 
 namespace supple::cli {
 
 struct Input;
+class MovingObjects;
 
 /// Writes the result of `supple detect` as docs/json.md describes, frame by frame.
 class JsonReport {
  public:
-  JsonReport(const std::string& file_name, const Input& input, const Scene& scene,
+  JsonReport(const std::string& file_name, const Input& input, const MovingObjects& objects,
              const JsonContent& content);
 
   void add(const Frame& frame);
@@ -26,7 +26,7 @@ class JsonReport {
   void add_files(std::uint64_t frame);
 
   const Input& input_;
-  const Scene& scene_;
+  const MovingObjects& objects_;
   JsonContent content_;
   bool is_truncated_ = false;
 };

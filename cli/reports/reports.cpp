@@ -11,15 +11,16 @@
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "inputs/parts.hpp"
+#include "moving/moving_objects.hpp"
 #include "reports/node_pair_report.hpp"
 #include "supple/result_descriptions.hpp"
 
 namespace supple::cli {
 namespace {
 
-std::string describe(const Scene& scene, const Difference& d) {
+std::string describe(const Input& input, const Difference& d) {
   return fmt::format("triangle {} of {} and triangle {} of {} {}", d.triangle_a,
-                     one_line(scene.name(d.object_a)), d.triangle_b, one_line(scene.name(d.object_b)),
+                     one_line(input.name(d.object_a)), d.triangle_b, one_line(input.name(d.object_b)),
                      d.missed ? "intersect and were not reported" : "were reported and do not intersect");
 }
 
@@ -37,14 +38,14 @@ const char* outcome_of(ContinuousDifference::Fault fault) {
   return "were reported with a time too long before they touch";
 }
 
-std::string describe(const Scene& scene, const ContinuousDifference& d) {
+std::string describe(const Input& input, const ContinuousDifference& d) {
   const auto [kind_a, kind_b] = feature_kinds(d.kind);
   const auto numbers = [](const std::array<std::uint32_t, 2>& ids) {
     return ids[0] == ids[1] ? fmt::format("{}", ids[0]) : fmt::format("{} {}", ids[0], ids[1]);
   };
   return fmt::format("{} {} of {} and {} {} of {} {}", word_of(kind_a), numbers(d.element_a),
-                     one_line(scene.name(d.object_a)), word_of(kind_b), numbers(d.element_b),
-                     one_line(scene.name(d.object_b)), outcome_of(d.fault));
+                     one_line(input.name(d.object_a)), word_of(kind_b), numbers(d.element_b),
+                     one_line(input.name(d.object_b)), outcome_of(d.fault));
 }
 
 const char* outcome_of(ProximityDifference::Fault fault) {
@@ -59,11 +60,11 @@ const char* outcome_of(ProximityDifference::Fault fault) {
   return "were reported with wrong features or an inaccurate distance";
 }
 
-std::string describe(const Scene& scene, const ProximityDifference& d) {
+std::string describe(const Input& input, const ProximityDifference& d) {
   const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
     const std::string numbers =
         kind == FeatureKind::edge ? fmt::format("{} {}", ids[0], ids[1]) : fmt::format("{}", ids[0]);
-    return fmt::format("{} {} of {}", word_of(kind), numbers, one_line(scene.name(object)));
+    return fmt::format("{} {} of {}", word_of(kind), numbers, one_line(input.name(object)));
   };
   return fmt::format("{} and {} {}", named(d.kind_a, d.element_a, d.object_a),
                      named(d.kind_b, d.element_b, d.object_b), outcome_of(d.fault));
@@ -81,33 +82,35 @@ const char* outcome_of(PenetrationDifference::Fault fault) {
   return "was reported with a triangle that is not the nearest or with an inaccurate depth";
 }
 
-std::string describe(const Scene& scene, const PenetrationDifference& d) {
-  return fmt::format("for {}: vertex {} of {} {}", one_line(scene.name(d.object_b)), d.vertex,
-                     one_line(scene.name(d.object_a)), outcome_of(d.fault));
+std::string describe(const Input& input, const PenetrationDifference& d) {
+  return fmt::format("for {}: vertex {} of {} {}", one_line(input.name(d.object_b)), d.vertex,
+                     one_line(input.name(d.object_a)), outcome_of(d.fault));
 }
 
-void print_difference(const Scene& scene, std::uint64_t frame, const VerifyReport& report) {
+void print_difference(const Input& input, std::uint64_t frame, const VerifyReport& report) {
   const std::string first =
-      !report.continuous_differences.empty()  ? describe(scene, report.continuous_differences.front())
-      : !report.differences.empty()           ? describe(scene, report.differences.front())
-      : !report.proximity_differences.empty() ? describe(scene, report.proximity_differences.front())
-                                              : describe(scene, report.penetration_differences.front());
+      !report.continuous_differences.empty()  ? describe(input, report.continuous_differences.front())
+      : !report.differences.empty()           ? describe(input, report.differences.front())
+      : !report.proximity_differences.empty() ? describe(input, report.proximity_differences.front())
+                                              : describe(input, report.penetration_differences.front());
   fmt::print(stderr, "supple: verify: frame {} has {} from brute force; the first: {}\n", frame,
              counted(report.difference_count(), "difference"), first);
 }
 
 }  // namespace
 
-Reports::Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun)
+Reports::Reports(const DetectionOptions& options, const Input& input, const MovingObjects& objects,
+                 std::string noun)
     : options_(options),
-      scene_(scene),
+      input_(input),
+      objects_(objects),
       solid_parts_(describe_solid_parts(input)),
-      tested_(input, scene.options().contacts) {
+      tested_(input, input.simulation.scene.contacts) {
   if (options.json_content.node_pairs) check_node_pairs(input, *options.json_content.node_pairs);
-  if (!options.json.empty()) json_.emplace(options.json, input, scene, options.json_content);
+  if (!options.json.empty()) json_.emplace(options.json, input, objects, options.json_content);
   if (!options.csv.empty()) csv_.emplace(options.csv, options.scene, options.json_content.contact_details);
   if (!options.quiet && options.json != "-" && options.csv != "-")
-    text_.emplace(std::move(noun), input, scene);
+    text_.emplace(std::move(noun), input, objects);
 }
 
 void Reports::add(const Frame& frame) {
@@ -120,7 +123,7 @@ void Reports::add(const Frame& frame) {
   touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty() ||
              !frame.result.proximity_groups.empty() || !frame.result.penetration_groups.empty();
   if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
-    print_difference(scene_, frame.number, *frame.verify);
+    print_difference(input_, frame.number, *frame.verify);
 }
 
 void Reports::finish(bool was_ended) {
@@ -135,10 +138,10 @@ void Reports::finish(bool was_ended) {
     if (!options_.quiet && !is_failing()) report_faults("warning");
     return;
   }
-  text_->print(scene_, tested_);
+  text_->print(tested_);
   if (!solid_parts_.empty()) fmt::print("\n{}\n", solid_parts_);
   if (const auto& objects = options_.json_content.node_pairs; objects && !was_ended)
-    print_node_pairs(scene_, *objects, last_frame_);
+    print_node_pairs(objects_.scene(), *objects, last_frame_);
 }
 
 void Reports::report_faults(const char* what) const {

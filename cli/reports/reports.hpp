@@ -10,15 +10,17 @@
 #include "reports/report.hpp"
 #include "reports/tested_kinds.hpp"
 #include "reports/text_report.hpp"
-#include "supple/scene.hpp"
 
 namespace supple::cli {
+
+class MovingObjects;
 
 /// The requested reports, and the results that decide the exit status.
 class Reports {
  public:
   /// `noun` is the word for a frame in messages: `frame` or `step`.
-  Reports(const DetectionOptions& options, const Input& input, const Scene& scene, std::string noun);
+  Reports(const DetectionOptions& options, const Input& input, const MovingObjects& objects,
+          std::string noun);
 
   /// No tables are printed with --quiet, or when standard output has other data.
   bool has_tables() const { return text_.has_value(); }
@@ -36,7 +38,8 @@ class Reports {
   bool is_failing() const { return options_.fail_on_contact && !touched_ && !differed_; }
 
   const DetectionOptions& options_;
-  const Scene& scene_;
+  const Input& input_;
+  const MovingObjects& objects_;
   std::string solid_parts_;
   std::optional<JsonReport> json_;
   std::optional<CsvReport> csv_;

@@ -2,24 +2,48 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <span>
+#include <type_traits>
+
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
+#include "moving/moving_objects.hpp"
+#include "reports/record_json.hpp"
 #include "supple/topology.hpp"
 
 namespace supple::cli {
 
+namespace {
+
+/// The vertices of an element of the contact on side 'a' or 'b'.
+template <class Contact>
+std::vector<std::uint32_t> vertices_of(const TriangleMesh& mesh, const Contact& contact, char side) {
+  const auto corners = [&](std::uint32_t triangle) {
+    const Triangle& t = mesh.triangles[triangle];
+    return std::vector<std::uint32_t>(t.begin(), t.end());
+  };
+  if constexpr (std::is_same_v<Contact, supple::Contact>) {
+    return corners(side == 'a' ? contact.triangle_a : contact.triangle_b);
+  } else {
+    const auto& element = side == 'a' ? contact.element_a : contact.element_b;
+    const FeatureKind kind = kind_of_element(contact, side);
+    if (kind == FeatureKind::face) return corners(element[0]);
+    return {element.begin(), element.begin() + (kind == FeatureKind::edge ? 2 : 1)};
+  }
+}
+
+}  // namespace
+
 /// Whether the two elements have vertices at equal positions.
 template <class Contact>
 bool SelfContacts::is_at_seam(const Contact& contact) const {
-  const ElementVertices a = scene_.vertices_of(contact, ContactSide::a),
-                        b = scene_.vertices_of(contact, ContactSide::b);
-  for (std::uint32_t i = 0; i < a.count; ++i) {
-    const Vec3d position = scene_.position(contact.object_a, a.ids[i]);
-    for (std::uint32_t j = 0; j < b.count; ++j) {
-      if (position == scene_.position(contact.object_b, b.ids[j])) return true;
-    }
-  }
-  return false;
+  const TriangleMesh& mesh = input_.objects[contact.object_a.index].mesh;
+  const std::span<const Vec3d> positions = objects_.positions(contact.object_a);
+  const std::vector<std::uint32_t> a = vertices_of(mesh, contact, 'a'), b = vertices_of(mesh, contact, 'b');
+  return std::ranges::any_of(a, [&](std::uint32_t v) {
+    return std::ranges::any_of(b, [&](std::uint32_t w) { return positions[v] == positions[w]; });
+  });
 }
 
 void SelfContacts::add(const DetectResult& result) {
@@ -44,7 +68,7 @@ std::vector<std::string> SelfContacts::notes() const {
     notes.push_back(
         fmt::format("{} of {} of {} with itself {} between vertices at equal positions, as at the seams of "
                     "an export; --weld makes such vertices one",
-                    grouped(counts.at_seams), counted(counts.all, "contact"), name_of(scene_, object),
+                    grouped(counts.at_seams), counted(counts.all, "contact"), name_of(input_, object),
                     counts.at_seams == 1 ? "is" : "are"));
   }
   if (const std::string note = note_of_neighbours(); !note.empty()) notes.push_back(note);
@@ -52,7 +76,7 @@ std::vector<std::string> SelfContacts::notes() const {
 }
 
 std::string SelfContacts::note_of_neighbours() const {
-  if (!contains(scene_.options().contacts, ContactKinds::intersection)) return "";
+  if (!contains(input_.simulation.scene.contacts, ContactKinds::intersection)) return "";
   std::uint64_t pairs = 0;
   for (const InputObject& object : input_.objects) {
     if (!object.options.self_collision || object.options.neighbours == Neighbours::exact) continue;

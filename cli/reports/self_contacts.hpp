@@ -5,17 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "supple/scene.hpp"
+#include "supple/result.hpp"
 
 namespace supple::cli {
 
 struct Input;
+class MovingObjects;
 
 /// What contacts of objects with themselves do not show: that they follow from split seams, and how many
 /// pairs of triangles are left out because they share a vertex.
 class SelfContacts {
  public:
-  SelfContacts(const Input& input, const Scene& scene) : input_(input), scene_(scene) {}
+  SelfContacts(const Input& input, const MovingObjects& objects) : input_(input), objects_(objects) {}
 
   void add(const DetectResult& result);
   /// Lines without a full stop.
@@ -31,7 +32,7 @@ class SelfContacts {
   std::string note_of_neighbours() const;
 
   const Input& input_;
-  const Scene& scene_;
+  const MovingObjects& objects_;
   std::map<ObjectId, Counts> counts_;
 };
 

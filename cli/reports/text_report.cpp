@@ -11,6 +11,7 @@
 
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
+#include "moving/moving_objects.hpp"
 #include "supple/result_descriptions.hpp"
 
 namespace supple::cli {
@@ -89,30 +90,31 @@ void TextReport::add(const Frame& frame) {
   differences_ += verify.difference_count();
 }
 
-void TextReport::print(const Scene& scene, const TestedKinds& tested) const {
-  const std::vector<ObjectId> objects = scene.objects();
+void TextReport::print(const TestedKinds& tested) const {
   std::uint64_t triangles = 0;
-  for (const ObjectId object : objects) triangles += scene.triangle_count(object);
-  fmt::print("{}, {}, {}\n\n", counted(objects.size(), "object"), counted(triangles, "triangle"),
-             counted(frames_, noun_));
-  print_contacts(scene, tested);
-  if (simulated_) print_collisions(scene);
-  print_stages(scene);
+  for (const InputObject& object : input_.objects) triangles += object.mesh.triangles.size();
+  const std::string ranks =
+      objects_.rank_count() > 1 ? fmt::format(", {} ranks", objects_.rank_count()) : std::string();
+  fmt::print("{}, {}, {}{}\n\n", counted(input_.objects.size(), "object"), counted(triangles, "triangle"),
+             counted(frames_, noun_), ranks);
+  print_contacts(tested);
+  if (simulated_) print_collisions();
+  print_stages();
   if (non_finite_ > 0)
     fmt::print("\n{} not finite in the last frame: the triangles that use these vertices touch nothing\n",
                counted(non_finite_, "position"));
-  if (verified_) print_verify(scene);
+  if (verified_) print_verify();
 }
 
 /// Leaves out "Nothing touches." for kinds of contacts that were not tested.
-void TextReport::print_contacts(const Scene& scene, const TestedKinds& tested) const {
+void TextReport::print_contacts(const TestedKinds& tested) const {
   if (tested.was_tested(ContactKinds::intersection)) {
-    print_pairs(scene);
-    if (contains(scene.options().contacts, ContactKinds::penetration)) print_curves();
+    print_pairs();
+    if (contains(input_.simulation.scene.contacts, ContactKinds::penetration)) print_curves();
   }
-  if (tested.was_tested(ContactKinds::penetration)) print_penetrations(scene);
-  if (tested.was_tested(ContactKinds::continuous)) impacts_.print(scene);
-  if (tested.was_tested(ContactKinds::proximity)) print_near(scene);
+  if (tested.was_tested(ContactKinds::penetration)) print_penetrations();
+  if (tested.was_tested(ContactKinds::continuous)) impacts_.print(input_);
+  if (tested.was_tested(ContactKinds::proximity)) print_near();
   for (std::vector<std::string> lines : {tested.faults(), self_contacts_.notes()}) {
     for (std::string& line : lines) {
       line.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(line.front())));
@@ -121,7 +123,7 @@ void TextReport::print_contacts(const Scene& scene, const TestedKinds& tested) c
   }
 }
 
-void TextReport::print_near(const Scene& scene) const {
+void TextReport::print_near() const {
   if (near_.empty()) {
     fmt::print("Nothing is within the margins.\n\n");
     return;
@@ -130,13 +132,13 @@ void TextReport::print_near(const Scene& scene) const {
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
     return x.second.pairs != y.second.pairs ? x.second.pairs > y.second.pairs : x.first < y.first;
   });
-  const bool lists_features = scene.options().proximity_listing == ProximityListing::features;
+  const bool lists_features = input_.simulation.scene.proximity_listing == ProximityListing::features;
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24}\n", "object", "is near", "frames",
              lists_features ? "feature pairs" : "element pairs", "smallest distance");
   for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
     const auto& [pair, near] = rows[i];
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24}\n", name_of(scene, pair.a),
-               pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(near.frames),
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24}\n", name_of(input_, pair.a),
+               pair.a == pair.b ? "itself" : name_of(input_, pair.b), grouped(near.frames),
                grouped(near.pairs), near.smallest);
   }
   if (rows.size() > most_rows)
@@ -150,7 +152,7 @@ void TextReport::print_curves() const {
              grouped(open_curves_), grouped(branched_curves_));
 }
 
-void TextReport::print_penetrations(const Scene& scene) const {
+void TextReport::print_penetrations() const {
   if (inside_.empty()) {
     fmt::print("No vertex is inside a solid object.\n\n");
     return;
@@ -159,14 +161,14 @@ void TextReport::print_penetrations(const Scene& scene) const {
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
     return x.second.vertices != y.second.vertices ? x.second.vertices > y.second.vertices : x.first < y.first;
   });
-  const bool lists_all = scene.options().depths == PenetrationDepths::all;
+  const bool lists_all = input_.simulation.scene.depths == PenetrationDepths::all;
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", "object", "is inside", "frames",
              lists_all ? "vertices inside" : "vertices listed", "largest depth", "in frame",
              "frames, wholly");
   for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
     const auto& [pair, inside] = rows[i];
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", name_of(scene, pair.a),
-               name_of(scene, pair.b), grouped(inside.frames), grouped(inside.vertices), inside.deepest,
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", name_of(input_, pair.a),
+               name_of(input_, pair.b), grouped(inside.frames), grouped(inside.vertices), inside.deepest,
                inside.frame_of_deepest, grouped(inside.frames_contained));
   }
   if (rows.size() > most_rows)
@@ -175,14 +177,14 @@ void TextReport::print_penetrations(const Scene& scene) const {
       rows, [](const auto& x, const auto& y) { return x.second.deepest < y.second.deepest; });
   if (deepest.vertices > 0)
     fmt::print("\nThe deepest is vertex {} of {} inside {}: {} in {} {}.\n", deepest.deepest_vertex,
-               name_of(scene, pair.a), name_of(scene, pair.b), deepest.deepest, noun_,
+               name_of(input_, pair.a), name_of(input_, pair.b), deepest.deepest, noun_,
                deepest.frame_of_deepest);
   fmt::print("\n");
 }
 
-void TextReport::print_pairs(const Scene& scene) const {
+void TextReport::print_pairs() const {
   if (pairs_.empty()) {
-    const bool finds_only_these = scene.options().contacts == ContactKinds::intersection;
+    const bool finds_only_these = input_.simulation.scene.contacts == ContactKinds::intersection;
     fmt::print("{}\n\n", finds_only_these ? "Nothing touches." : "No triangles intersect.");
     return;
   }
@@ -198,8 +200,8 @@ void TextReport::print_pairs(const Scene& scene) const {
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", "object", "touches", "frames", "triangle pairs",
              "most in a frame", "in frame");
   for (const auto& [pair, summary] : rows) {
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", name_of(scene, pair.a),
-               pair.a == pair.b ? "itself" : name_of(scene, pair.b), grouped(summary.frames),
+    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", name_of(input_, pair.a),
+               pair.a == pair.b ? "itself" : name_of(input_, pair.b), grouped(summary.frames),
                grouped(summary.triangle_pairs), grouped(summary.most), summary.frame_of_most);
   }
   if (left_out > 0) fmt::print("and {} with fewer; --json lists all\n", counted(left_out, "pair"));
@@ -208,16 +210,16 @@ void TextReport::print_pairs(const Scene& scene) const {
              counted(begun_, "time"), counted(ended_, "time"));
 }
 
-void TextReport::print_collisions(const Scene& scene) const {
+void TextReport::print_collisions() const {
   fmt::print("collisions: {} that two objects' volumes began to overlap, ", counted(volumes_begun_, "time"));
-  if (scene.options().comparison.colliding_vertices)
+  if (input_.simulation.scene.comparison.colliding_vertices)
     fmt::print("{} that leaves of two objects' octrees did, ", counted(leaves_begun_, "time"));
-  if (contains(scene.options().contacts, ContactKinds::proximity))
+  if (contains(input_.simulation.scene.contacts, ContactKinds::proximity))
     fmt::print("{} that two objects came within their margins, ", counted(near_begun_, "time"));
   fmt::print("{} that two objects began to touch\n\n", counted(begun_, "time"));
 }
 
-void TextReport::print_stages(const Scene& scene) const {
+void TextReport::print_stages() const {
   const double frames = static_cast<double>(std::max<std::uint64_t>(frames_, 1));
   const double total_seconds = sum_.total_seconds + motion_seconds_;
   const auto row = [&](const char* stage, double seconds, const std::string& work) {
@@ -242,7 +244,7 @@ void TextReport::print_stages(const Scene& scene) const {
       fmt::format("{}{}, {} decided by exact arithmetic", counted(sum_.contacts, "contact"),
                   sum_.proximity_pairs > 0 ? ", " + counted(sum_.proximity_pairs, "near pair") : "",
                   grouped(sum_.exact_fallbacks)));
-  if (contains(scene.options().contacts, ContactKinds::penetration))
+  if (contains(input_.simulation.scene.contacts, ContactKinds::penetration))
     row("penetration", sum_.penetration_seconds,
         fmt::format("{} inside, {}", counted(sum_.penetrations, "vertex", "vertices"),
                     counted(sum_.curves, "curve")));
@@ -250,11 +252,11 @@ void TextReport::print_stages(const Scene& scene) const {
   row("total", total_seconds, "");
 }
 
-void TextReport::print_verify(const Scene& scene) const {
-  const char* const noun = contains(scene.options().contacts, ContactKinds::penetration)
+void TextReport::print_verify() const {
+  const char* const noun = contains(input_.simulation.scene.contacts, ContactKinds::penetration)
                                ? "pair of triangles, elements, or vertex and triangle"
-                           : scene.options().contacts == ContactKinds::intersection ? "triangle pair"
-                           : !contains(scene.options().contacts, ContactKinds::intersection)
+                           : input_.simulation.scene.contacts == ContactKinds::intersection ? "triangle pair"
+                           : !contains(input_.simulation.scene.contacts, ContactKinds::intersection)
                                ? "element pair"
                                : "triangle and element pair";
   fmt::print("\nverified: {} checked by brute force, {}\n", counted(checked_, noun),

@@ -9,7 +9,6 @@
 #include "reports/report.hpp"
 #include "reports/self_contacts.hpp"
 #include "reports/tested_kinds.hpp"
-#include "supple/scene.hpp"
 
 namespace supple::cli {
 
@@ -17,12 +16,12 @@ namespace supple::cli {
 class TextReport {
  public:
   /// `noun` is the word for a frame: `frame` or `step`.
-  TextReport(std::string noun, const Input& input, const Scene& scene)
-      : noun_(std::move(noun)), self_contacts_(input, scene) {}
+  TextReport(std::string noun, const Input& input, const MovingObjects& objects)
+      : noun_(std::move(noun)), input_(input), objects_(objects), self_contacts_(input, objects) {}
 
   void add(const Frame& frame);
   /// Prints to standard output.
-  void print(const Scene& scene, const TestedKinds& tested) const;
+  void print(const TestedKinds& tested) const;
 
  private:
   struct PairSummary {
@@ -45,16 +44,18 @@ class TextReport {
     std::uint64_t frames_contained = 0;  ///< frames in which the whole object is inside
   };
 
-  void print_contacts(const Scene& scene, const TestedKinds& tested) const;
+  void print_contacts(const TestedKinds& tested) const;
   void print_curves() const;
-  void print_penetrations(const Scene& scene) const;
-  void print_near(const Scene& scene) const;
-  void print_pairs(const Scene& scene) const;
-  void print_collisions(const Scene& scene) const;
-  void print_stages(const Scene& scene) const;
-  void print_verify(const Scene& scene) const;
+  void print_penetrations() const;
+  void print_near() const;
+  void print_pairs() const;
+  void print_collisions() const;
+  void print_stages() const;
+  void print_verify() const;
 
   std::string noun_;
+  const Input& input_;
+  const MovingObjects& objects_;
   std::uint64_t triangle_pairs_ = 0;
   std::uint64_t frames_ = 0;
   std::map<ObjectPair, PairSummary> pairs_;

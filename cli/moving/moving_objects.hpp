@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "inputs/half_turns.hpp"
+#include "inputs/inputs.hpp"
+#include "supple/simulation.hpp"
+
+namespace supple::cli {
+
+/// The energy of a body of masses and springs.
+struct BodyEnergy {
+  ObjectId object;
+  MassSpringEnergy energy;
+};
+
+/// The objects of an input, which move step by step, and their contacts. Here all are in one process; of the
+/// program for several ranks, each rank has some of them, and calls that are not const are collective.
+class MovingObjects {
+ public:
+  /// Throws `Error` as `build_simulation` does.
+  explicit MovingObjects(const Input& input);
+  virtual ~MovingObjects() = default;
+  MovingObjects(const MovingObjects&) = delete;
+  MovingObjects& operator=(const MovingObjects&) = delete;
+
+  // As the functions of `Simulation`.
+  virtual const DetectResult& detect(const DetectRequest& request) { return simulation_.detect(request); }
+  virtual const DetectResult& step(const DetectRequest& request) { return simulation_.step(request); }
+  /// Call it before a step whose `turned` is read.
+  void remember_positions() { turns_->remember_positions(); }
+  /// The objects whose straight paths in the last step are not their motion, ascending.
+  virtual std::vector<ObjectId> turned() { return turns_->find(); }
+  /// Of all bodies, ascending by object. Of several ranks, only rank 0 knows it.
+  virtual std::vector<BodyEnergy> energies();
+  /// See `viewer::warning_of_long_steps`.
+  virtual std::optional<std::string> warning_of_long_steps();
+  /// Where an object is now. Of several ranks, only rank 0 knows it: of objects that touch themselves, or of
+  /// all when a recording needs them.
+  virtual std::span<const Vec3d> positions(ObjectId object) const { return simulation_.positions(object); }
+  virtual int rank_count() const { return 1; }
+
+  std::uint64_t step_count() const { return simulation_.step_count(); }
+  double time() const { return simulation_.time(); }
+  double motion_seconds() const { return simulation_.motion_seconds(); }
+  /// The scene with all objects, in one process.
+  const Scene& scene() const { return simulation_.scene(); }
+
+ protected:
+  /// Without objects.
+  explicit MovingObjects(const SimulationOptions& options) : simulation_(options) {}
+
+  Simulation simulation_;  ///< of the objects in this process
+  std::optional<HalfTurns> turns_;
+};
+
+}  // namespace supple::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "moving/moving_objects.hpp"
+#include "options/options.hpp"
+
+namespace supple::cli {
+
+/// The processes of a run. This class is the only one; `MpiRanks` is one of several. All ranks make the calls
+/// that are not const in the same order. Rank 0 writes what users read.
+class Ranks {
+ public:
+  Ranks() = default;
+  virtual ~Ranks() = default;
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+
+  virtual int rank() const { return 0; }
+  virtual int size() const { return 1; }
+  /// Does the work on each rank. When it throws on one of them, the call throws on all of them.
+  virtual void together(const std::function<void()>& work) { work(); }
+  /// The largest of the numbers of all ranks.
+  virtual int largest(int number) { return number; }
+  /// Throws `Error` when several ranks cannot do what the options or the input want.
+  virtual void check(const DetectionOptions&, const Input&) {}
+  /// Ranks other than 0 lose the meshes of the input. `records` says that a recording needs all positions.
+  virtual std::unique_ptr<MovingObjects> move(Input& input, [[maybe_unused]] bool records) {
+    return std::make_unique<MovingObjects>(input);
+  }
+};
+
+}  // namespace supple::cli

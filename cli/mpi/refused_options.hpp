@@ -1,0 +1,11 @@
+#pragma once
+
+#include "inputs/inputs.hpp"
+#include "options/options.hpp"
+
+namespace supple::cli {
+
+/// Throws `Error` for what a distributed scene lacks.
+void refuse_options(const DetectionOptions& options, const Input& input);
+
+}  // namespace supple::cli

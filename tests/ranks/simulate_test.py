@@ -1,0 +1,54 @@
+"""`supple simulate` on several ranks: the same motion, contacts and recordings."""
+
+import unittest
+
+from ranks import SCENES, RanksTest, launch
+
+
+class Simulate(RanksTest):
+    def test_scenes(self):
+        self.assertIn("touches", self.assert_same(SCENES / "nine.toml", "--frames", 8, command="simulate"))
+        self.assert_same(SCENES / "rigid.toml", "--frames", 6, "--contacts", "continuous", command="simulate",
+                         ranks=(2,))
+        self.assert_same(SCENES / "three_bikes.toml", "--frames", 8, command="simulate", ranks=(3,))
+        self.assertIn("energy", self.assert_same(SCENES / "spring_lengths.toml", "--frames", 5, command="simulate", ranks=(2,)))
+
+    def test_recordings(self):
+        """All except the counts of work: they are those of the ranks."""
+        reports = []
+        for ranks in (0, 2, 3):
+            done = launch(ranks, "simulate", SCENES / "nine.toml", "--frames", 6, "--record", "run.h5", "--quiet",
+                          folder=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+            read = self.run_here("detect", "run.h5", "--json", "-", "--no-stats", "--contact-details")
+            self.assertEqual(read.status, 0, read.error)
+            differ = self.run_here("diff", "run.h5", "alone.h5" if reports else "run.h5")
+            self.assertRegex(differ.out, "differ in frame 0: statistics" if reports else "equal")
+            reports.append(read.out)
+            if len(reports) == 1:
+                (self.folder / "run.h5").rename(self.folder / "alone.h5")
+        self.assertEqual(reports[0], reports[1])
+        self.assertEqual(reports[0], reports[2])
+
+    def test_a_motion_that_blows_up(self):
+        scene = self.write("scene.toml", """
+            [scene]
+            time_step = 0.05
+            [[object]]
+            model = "box"
+            motion = { kind = "mass_spring", velocity = [1, 0, 0] }
+            [[object]]
+            name = "stiff"
+            model = "icosphere"
+            translate = [9, 0, 0]
+            motion = { kind = "mass_spring", stiffness = 1e5, random_force = 1, deform_seconds = 1 }
+            """)
+        alone = self.written(0, "simulate", [scene, "--frames", 1001], [])
+        self.assertEqual(alone[0], 2)
+        self.assertIn("stiff in step", alone[2])
+        self.assertIn("is too long for stiff", alone[2])
+        self.assertEqual(alone, self.written(2, "simulate", [scene, "--frames", 1001], []))
+
+
+if __name__ == "__main__":
+    unittest.main()
