@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "commands/build_simulation.hpp"
+#include "session/messages/long_steps.hpp"
 #include "supple/error.hpp"
 
 namespace supple::cli {
@@ -60,8 +61,7 @@ DistributedObjects::DistributedObjects(MpiRanks& ranks, Input& input, bool recor
       is_continuous_(contains(input.simulation.scene.contacts, ContactKinds::continuous)),
       records_(records),
       firsts_(firsts_of(input, ranks.size())),
-      scene_(MPI_COMM_WORLD, {.scene = simulation_.options().scene}),
-      nothing_(input) {
+      scene_(MPI_COMM_WORLD, {.scene = simulation_.options().scene}) {
   no_detection_.request_stop();
   ranks.together([&] { add_objects(input); });
 }
@@ -91,14 +91,12 @@ void DistributedObjects::add_objects(Input& input) {
 }
 
 const DetectResult& DistributedObjects::detect(const DetectRequest&) {
-  return find_contacts(false);
+  return find_contacts();
 }
 
 const DetectResult& DistributedObjects::step(const DetectRequest&) {
   std::optional<std::string> fault;
   ranks_.together([&] {
-    if (input_.simulation.response)
-      throw Error("response: several ranks do not have it; leave it out, or start one process");
     for (std::size_t i = 0; i < before_.size() && is_continuous_; ++i) {
       const auto positions = simulation_.positions(ObjectId{static_cast<std::uint32_t>(i)});
       before_[i].assign(positions.begin(), positions.end());
@@ -106,8 +104,17 @@ const DetectResult& DistributedObjects::step(const DetectRequest&) {
     if (const auto error = simulation_.try_step({.stop = no_detection_.get_token()})) fault = error->what();
     if (!fault) place_objects();
   });
-  if (const auto first = ranks_.first(fault)) throw MotionError(*first, {}, simulation_.step_count() + 1);
-  return find_contacts(true);
+  const auto first = ranks_.first(fault);
+  if (first && !fault) undo_step();
+  if (first) throw MotionError(*first, {}, simulation_.step_count() + 1);
+  return find_contacts();
+}
+
+/// Bodies of other ranks have failed, so those of this rank go back to the step before, too.
+void DistributedObjects::undo_step() {
+  for (const ObjectId object : simulation_.scene().objects()) {
+    if (MassSpringBody* const body = simulation_.body(object)) body->undo_step();
+  }
 }
 
 void DistributedObjects::place_objects() {
@@ -121,7 +128,7 @@ void DistributedObjects::place_objects() {
   }
 }
 
-const DetectResult& DistributedObjects::find_contacts(bool is_step) {
+const DetectResult& DistributedObjects::find_contacts() {
   const double start = MPI_Wtime();
   try {
     result_ = scene_.detect();
@@ -130,7 +137,6 @@ const DetectResult& DistributedObjects::find_contacts(bool is_step) {
   }
   result_.stats.total_seconds = MPI_Wtime() - start;
   fetch_positions();
-  if (ranks_.rank() == 0) result_.untested = nothing_.untested(result_, is_step);
   return result_;
 }
 
@@ -197,7 +203,18 @@ std::vector<BodyEnergy> DistributedObjects::energies() {
 }
 
 std::optional<std::string> DistributedObjects::warning_of_long_steps() {
-  return ranks_.first(MovingObjects::warning_of_long_steps());
+  viewer::LongSteps steps = viewer::find_long_steps(simulation_);
+  steps.worst.index += first_of(ranks_.rank());
+  std::vector<viewer::LongSteps> of_ranks(static_cast<std::size_t>(ranks_.size()));
+  MPI_Gather(&steps, sizeof steps, MPI_BYTE, of_ranks.data(), sizeof steps, MPI_BYTE, 0, MPI_COMM_WORLD);
+  if (ranks_.rank() != 0) return std::nullopt;
+  for (std::size_t rank = 1; rank < of_ranks.size(); ++rank) {
+    const std::uint64_t count = steps.count + of_ranks[rank].count;
+    if (of_ranks[rank].count > 0 && of_ranks[rank].stable_step < steps.stable_step) steps = of_ranks[rank];
+    steps.count = count;
+  }
+  return viewer::warning_of_long_steps(steps, simulation_.options().time_step,
+                                       steps.count > 0 ? input_.name(steps.worst) : std::string());
 }
 
 }  // namespace supple::cli

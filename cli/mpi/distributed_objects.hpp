@@ -9,7 +9,6 @@
 
 #include "moving/moving_objects.hpp"
 #include "mpi/mpi_ranks.hpp"
-#include "mpi/nothing_to_test.hpp"
 #include "supple/distributed.hpp"
 
 namespace supple::cli {
@@ -31,7 +30,8 @@ class DistributedObjects : public MovingObjects {
  private:
   void add_objects(Input& input);
   void place_objects();
-  const DetectResult& find_contacts(bool is_step);
+  void undo_step();
+  const DetectResult& find_contacts();
   void fetch_positions();
   std::uint32_t first_of(int rank) const { return firsts_[static_cast<std::size_t>(rank)]; }
   bool is_mine(std::uint32_t object) const {
@@ -45,7 +45,6 @@ class DistributedObjects : public MovingObjects {
   bool is_continuous_, records_;
   std::vector<std::uint32_t> firsts_;  ///< the first object of each rank, and the number of objects
   DistributedScene scene_;
-  NothingFound nothing_;
   DetectResult result_;
   std::stop_source no_detection_;            ///< of the simulation
   std::vector<std::vector<Vec3d>> before_;   ///< of this rank's objects that move on paths

@@ -21,26 +21,36 @@ std::string and_others(std::uint64_t count) {
 
 }  // namespace
 
-std::optional<std::string> warning_of_long_steps(const Simulation& simulation) {
-  const double time_step = simulation.options().time_step;
-  double shortest = time_step;
-  ObjectId worst;
-  std::uint64_t count = 0;
+LongSteps find_long_steps(const Simulation& simulation) {
+  LongSteps steps;
+  steps.stable_step = simulation.options().time_step;
   for (const ObjectId object : simulation.scene().objects()) {
     const MassSpringBody* const body = simulation.body(object);
-    if (!body || body->stable_step() >= time_step) continue;
-    ++count;
-    if (body->stable_step() >= shortest) continue;
-    shortest = body->stable_step();
-    worst = object;
+    if (!body || body->stable_step() >= simulation.options().time_step) continue;
+    ++steps.count;
+    if (body->stable_step() >= steps.stable_step) continue;
+    steps.stable_step = body->stable_step();
+    steps.worst = object;
+    steps.substeps = body->options().substeps;
   }
-  if (count == 0) return std::nullopt;
-  const double substeps = std::ceil(time_step / shortest * simulation.body(worst)->options().substeps);
-  return "time_step " + digits_of(time_step) + " is too long for " + simulation.scene().name(worst) +
-         and_others(count - 1) + ": its motion is stable up to " +
-         digits_of(shortest, std::chars_format::general, 3) +
+  return steps;
+}
+
+std::optional<std::string> warning_of_long_steps(const LongSteps& steps, double time_step,
+                                                 const std::string& worst_name) {
+  if (steps.count == 0) return std::nullopt;
+  const double substeps = std::ceil(time_step / steps.stable_step * steps.substeps);
+  return "time_step " + digits_of(time_step) + " is too long for " + worst_name +
+         and_others(steps.count - 1) + ": its motion is stable up to " +
+         digits_of(steps.stable_step, std::chars_format::general, 3) +
          "; give it substeps = " + digits_of(substeps, std::chars_format::fixed) +
          ", a lower stiffness or integrator = \"backward_euler\", or shorten time_step";
+}
+
+std::optional<std::string> warning_of_long_steps(const Simulation& simulation) {
+  const LongSteps steps = find_long_steps(simulation);
+  return warning_of_long_steps(steps, simulation.options().time_step,
+                               steps.count > 0 ? simulation.scene().name(steps.worst) : std::string());
 }
 
 }  // namespace supple::viewer
