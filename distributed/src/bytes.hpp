@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/error.hpp"
+
 namespace supple {
 
 template <class Value>
@@ -44,7 +46,8 @@ class Writer {
   std::vector<std::byte>& bytes_;
 };
 
-/// Takes values from a message in the order of `Writer`.
+/// Takes values from a message in the order of `Writer`. Throws `Error` when it ends too early, as a file that
+/// was damaged.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -52,13 +55,18 @@ class Reader {
   bool is_done() const { return rest_.empty(); }
   template <Plain Value>
   Value get() {
-    Value value;
-    take(&value, sizeof value);
-    return value;
+    if constexpr (std::is_same_v<Value, bool>) {
+      return get<std::uint8_t>() != 0;  // a damaged byte is no bool
+    } else {
+      Value value;
+      take(&value, sizeof value);
+      return value;
+    }
   }
   template <Plain Value>
   void append_all(std::vector<Value>& values) {
     const std::size_t first = values.size(), count = static_cast<std::size_t>(get<std::uint64_t>());
+    if (count > rest_.size() / sizeof(Value)) fail(ends_early);
     values.resize(first + count);
     take(values.data() + first, count * sizeof(Value));
   }
@@ -70,7 +78,10 @@ class Reader {
   }
 
  private:
+  static constexpr const char* ends_early = "the data ends too early";
+
   void take(void* to, std::size_t size) {
+    if (size > rest_.size()) fail(ends_early);
     if (size != 0) std::memcpy(to, rest_.data(), size);
     rest_ = rest_.subspan(size);
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -72,6 +73,9 @@ class DistributedScene::Implementation {
   std::vector<ProximityPair> distances(double max_distance);
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& closest_options);
+  void save(const std::string& path);
+  void load(const std::string& path);
+  const std::map<ObjectId, HomeObject>& homes() const { return homes_; }
 
   Communicator ranks;
   const DistributedOptions options;

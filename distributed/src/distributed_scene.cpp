@@ -230,6 +230,26 @@ SafeStep DistributedScene::max_step() {
   return {earliest->toi, LimitingPair{earliest->object_a, earliest->object_b, earliest->kind,
                                       earliest->element_a, earliest->element_b}};
 }
+void DistributedScene::save(const std::string& path) {
+  implementation_->save(path);
+}
+void DistributedScene::load(const std::string& path) {
+  implementation_->load(path);
+}
+std::vector<ObjectId> DistributedScene::objects() const {
+  std::vector<ObjectId> ids;
+  for (const auto& [id, object] : implementation_->homes()) ids.push_back(id);
+  return ids;
+}
+std::span<const std::uint32_t> DistributedScene::part_vertices(ObjectId id) const {
+  return implementation_->home(id, "part_vertices").part_vertices();
+}
+std::vector<Vec3d> DistributedScene::positions(ObjectId id) const {
+  const HomeObject& object = implementation_->home(id, "positions");
+  std::vector<Vec3d> found;
+  for (std::size_t v = 0; v < object.vertex_count(); ++v) found.push_back(object.position(v));
+  return found;
+}
 int DistributedScene::rank() const {
   return implementation_->ranks.rank();
 }

@@ -41,7 +41,7 @@ std::vector<Triangle> checked_elements(const TrianglesView& triangles, std::size
 }
 
 template <class Scalar>
-void write(const std::vector<Scalar>& xyz, std::span<const std::uint32_t> vertices, Writer& to) {
+void write_vertices(const std::vector<Scalar>& xyz, std::span<const std::uint32_t> vertices, Writer& to) {
   for (const std::uint32_t v : vertices)
     to.put(std::array<Scalar, 3>{xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]});
 }
@@ -274,9 +274,9 @@ void HomeObject::write_positions(std::uint32_t cluster, Writer& to) const {
     if (moment == &start_ && start_.size() == 0) continue;
     to.put<std::uint64_t>(3 * vertices.size());
     if (moment->is_double) {
-      write(moment->doubles, vertices, to);
+      write_vertices(moment->doubles, vertices, to);
     } else {
-      write(moment->floats, vertices, to);
+      write_vertices(moment->floats, vertices, to);
     }
   }
 }

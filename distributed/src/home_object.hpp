@@ -31,6 +31,10 @@ struct Coordinates {
   PositionsView view() const { return is_double ? PositionsView(doubles) : PositionsView(floats); }
 };
 
+/// What the home of an object says of it with the topology of a cluster: all but static, edges and points.
+void write_options(const ObjectOptions& options, Writer& to);
+ObjectOptions read_options(Reader& from);
+
 /// Neighbouring triangles of an object, and edges and points of no triangle.
 struct Cluster {
   std::vector<std::uint32_t> vertices;  ///< of the part, ascending
@@ -58,6 +62,12 @@ class HomeObject {
   /// How far the vertices of a cluster move, without the mean of their ways.
   VertexWays ways_of(const Cluster& cluster) const;
 
+  /// Writes all of it, for `HomeObject::read`.
+  void write(Writer& to) const;
+  /// The object of what one or several `write` wrote of it: the parts become one.
+  static HomeObject read(ObjectId id, std::span<const std::span<const std::byte>> parts,
+                         std::uint32_t cluster_triangles, std::uint32_t addition);
+
   void write_topology(std::uint32_t cluster, Writer& to) const;
   void write_positions(std::uint32_t cluster, Writer& to) const;
 
@@ -67,6 +77,10 @@ class HomeObject {
   /// Whether it has a triangle with three different corners that are finite all the way.
   bool has_finite_face() const;
   std::uint64_t version() const { return version_; }
+  /// Those of a part, ascending; empty for a whole object.
+  std::span<const std::uint32_t> part_vertices() const { return vertex_ids_; }
+  Vec3d position(std::size_t vertex) const { return end_[vertex]; }
+  std::size_t vertex_count() const { return vertex_count_; }
   std::uint32_t user_vertex(std::uint32_t v) const { return vertex_ids_.empty() ? v : vertex_ids_[v]; }
 
   ObjectId id;

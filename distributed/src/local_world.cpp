@@ -59,31 +59,6 @@ void read(Reader& from, bool is_double, Coordinates& to) {
 
 }  // namespace
 
-void write_options(const ObjectOptions& options, Writer& to) {
-  to.put_all(options.name);
-  to.put(options.self_collision);
-  to.put(options.neighbours);
-  to.put(options.margin);
-  to.put(options.min_separation);
-  to.put(options.solid);
-  to.put(options.group);
-  to.put(options.mask);
-}
-
-ObjectOptions read_options(Reader& from) {
-  const std::vector<char> name = from.get_all<char>();
-  ObjectOptions options;
-  options.name.assign(name.begin(), name.end());
-  options.self_collision = from.get<bool>();
-  options.neighbours = from.get<Neighbours>();
-  options.margin = from.get<double>();
-  options.min_separation = from.get<double>();
-  options.solid = from.get<bool>();
-  options.group = from.get<std::uint32_t>();
-  options.mask = from.get<std::uint32_t>();
-  return options;
-}
-
 std::optional<std::uint64_t> LocalWorld::version_of(const ClusterName& name) const {
   const auto object = objects_.find(name.object);
   if (object == objects_.end()) return std::nullopt;

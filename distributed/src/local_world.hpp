@@ -24,10 +24,6 @@ struct ClusterName {
   constexpr auto operator<=>(const ClusterName&) const = default;
 };
 
-/// What the home of an object says of it with the topology of a cluster.
-void write_options(const ObjectOptions& options, Writer& to);
-ObjectOptions read_options(Reader& from);
-
 /// The clusters that a rank needs for its pairs, as objects of a world. The clusters of one object are one
 /// object there, in which vertices and triangles have the order of the user's numbers, and the objects have
 /// the order of their ids. So contacts have the same sides and the same bits as in the whole scene. Clusters

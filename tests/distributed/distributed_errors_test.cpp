@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "supple/distributed.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
+#include "support/random.hpp"
 
 namespace supple {
 namespace {
@@ -134,6 +137,71 @@ TEST(DistributedErrors, OfSettingsAndSearches) {
             }).find("rank 0: detect: penetration needs all intersections, but ball has vertex groups"),
             std::string::npos);
   EXPECT_EQ(scene.detect().step, 0u);
+}
+
+std::string bytes_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+void write_file(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST(DistributedErrors, OfCheckpoints) {
+  const std::string path =
+      testing::TempDir() + "supple_bad_checkpoint_" + std::to_string(DistributedScene(MPI_COMM_WORLD).rank_count());
+  const auto error_of_load = [&](const std::string& file) {
+    return error_of([&] { DistributedScene(MPI_COMM_WORLD).load(file); });
+  };
+  DistributedScene scene(MPI_COMM_WORLD, {.scene = {.threads = 1}});
+  const TriangleMesh ball = make_icosphere(2);
+  scene.add(ObjectId{static_cast<std::uint32_t>(scene.rank())}, ball.positions, ball.triangles);
+  scene.detect();
+  scene.save(path);
+  EXPECT_NE(error_of([&] { scene.load(path); }).find("the scene has objects"), std::string::npos);
+  EXPECT_NE(error_of([&] { scene.save("/no such folder/checkpoint"); }).find("/no such folder/checkpoint"),
+            std::string::npos);
+  EXPECT_NE(error_of_load(path + "_missing").find(path + "_missing: cannot be opened"), std::string::npos);
+  const std::string bytes = bytes_of_file(path);
+  const auto with = [&](const std::string& changed) {
+    if (scene.rank() == 0) write_file(path, changed);
+    MPI_Barrier(MPI_COMM_WORLD);
+    const std::string error = error_of_load(path);
+    MPI_Barrier(MPI_COMM_WORLD);
+    return error;
+  };
+  EXPECT_NE(with("").find("is no checkpoint"), std::string::npos);
+  EXPECT_NE(with(std::string(bytes.size(), 'x')).find("is no checkpoint"), std::string::npos);
+  EXPECT_NE(with(bytes.substr(0, bytes.size() - 1)).find("is cut off"), std::string::npos);
+  EXPECT_NE(with(bytes + "x").find("is cut off or damaged"), std::string::npos);
+  std::string later = bytes;
+  later[8] = 7;
+  EXPECT_NE(with(later).find("version 7"), std::string::npos);
+  EXPECT_EQ(with(bytes), "");
+}
+
+/// Changed bytes give an error or other numbers, but never undefined behaviour.
+TEST(DistributedErrors, OfDamagedCheckpoints) {
+  if (DistributedScene(MPI_COMM_WORLD).rank() != 0) return;
+  const std::string path = testing::TempDir() + "supple_damaged_checkpoint";
+  DistributedScene scene(MPI_COMM_SELF, {.scene = {.threads = 1}});
+  const TriangleMesh box = make_box({1, 1, 1}, 1);
+  scene.add(ObjectId{0}, box.positions, box.triangles, {.name = "box", .edges = {{0, 1}}, .points = {2}});
+  scene.add(ObjectId{1}, box.positions, box.triangles, {.name = "other box"});
+  scene.detect();
+  scene.save(path);
+  const std::string bytes = bytes_of_file(path);
+  RandomNumbers random(5);
+  int errors = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::string damaged = bytes;
+    for (int k = 0; k < 2; ++k)
+      damaged[random.below(static_cast<std::uint32_t>(bytes.size()))] = static_cast<char>(random.below(256));
+    write_file(path, damaged);
+    DistributedScene restarted(MPI_COMM_SELF, {.scene = {.threads = 1}});
+    errors += error_of([&] { restarted.load(path); }).empty() ? 0 : 1;
+  }
+  EXPECT_GT(errors, 50);
 }
 
 TEST(DistributedErrors, AnEmptySceneHasNoContacts) {

@@ -378,6 +378,40 @@ TEST(DistributedScene, TheFirstOfTrianglesAtTheSameDistance) {
   EXPECT_EQ(found, expected);
 }
 
+/// A checkpoint of all ranks goes on with one rank, and one of one rank goes on with all: each time with the
+/// results and events of a scene that never stopped.
+TEST(DistributedScene, ACheckpointGoesOnWithOtherRanks) {
+  const std::string path = testing::TempDir() + "supple_checkpoint_" + std::to_string(size_of_world());
+  for (std::uint64_t seed = 151; seed < 152 + life_count(); ++seed) {
+    Lives lives(seed, small_clusters());
+    for (int i = 0; i < 6; ++i) lives.add_object(false);
+    const ContactKinds kinds = ContactKinds::intersection | ContactKinds::continuous | ContactKinds::proximity;
+    for (int step = 0; step < 6; ++step) {
+      lives.move_objects(false);
+      lives.change_settings(true);
+      if (step == 2 || step == 4) {
+        lives.plain.set_pair_filter({});  // the file has no filter
+        lives.distributed.save(path);
+        {
+          DistributedScene alone(MPI_COMM_SELF, small_clusters());
+          alone.load(path);
+          EXPECT_EQ(alone.objects().size(), lives.objects.size());
+          MPI_Barrier(MPI_COMM_WORLD);
+          alone.save(path + "_of_" + std::to_string(rank_of_world()));
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+        lives.distributed = DistributedScene(MPI_COMM_WORLD, small_clusters());
+        lives.distributed.load(step == 2 ? path : path + "_of_0");
+      }
+      const DetectResult& expected = lives.plain.detect({.contacts = kinds});
+      const DetectResult& found = lives.distributed.detect({.contacts = kinds});
+      if (rank_of_world() == 0)
+        expect_same(found, expected, "seed " + std::to_string(seed) + " step " + std::to_string(step));
+      if (step == 2 || step == 4) lives.settle_all();
+    }
+  }
+}
+
 TEST(DistributedScene, WorkIsSpreadOverTheRanks) {
   DistributedOptions options = small_clusters();
   options.cluster_triangles = 64;

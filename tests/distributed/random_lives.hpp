@@ -196,6 +196,15 @@ class Lives {
     }
   }
 
+  /// Gives all objects other ranks than those where a checkpoint put them.
+  void settle_all() {
+    for (const ObjectId id : distributed.objects()) distributed.remove(id);
+    for (LivingObject& object : objects) {
+      settle(object);
+      if (object.is_on_path) place(object);
+    }
+  }
+
   void remove_object() {
     if (objects.empty()) return;
     const std::uint32_t which = random.below(static_cast<std::uint32_t>(objects.size()));
@@ -326,6 +335,7 @@ class Lives {
 
   void place(const LivingObject& object) {
     for_my_part(object, [&](const Part* part) {
+      if (object.options.is_static) distributed.set_static(object.id, false);
       with_views(
           object.is_float, part != nullptr ? &part->vertices : nullptr,
           [&](const PositionsView& from, const PositionsView& now) {
@@ -333,6 +343,7 @@ class Lives {
                               : distributed.set_positions(object.id, now);
           },
           object.from, object.now);
+      if (object.options.is_static) distributed.set_static(object.id, true);
     });
   }
 

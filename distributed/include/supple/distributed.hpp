@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "supple/options.hpp"
@@ -139,6 +140,24 @@ class DistributedScene {
   /// regions that its ball meets, whose radius is the distance of a cluster's farthest corner.
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& options = {});
+
+  /// Collective: writes the objects of all ranks, with their options and positions, and what the events of
+  /// the next step need, to one file. The file appears when it is whole: an older one stays until then. The
+  /// options of the scene and the pair filter are not in it. Throws `Error` when the file cannot be written.
+  void save(const std::string& path);
+  /// Collective, for a scene without objects: adds those of a file of `save`, spread evenly over the ranks,
+  /// however many wrote it. Parts of an object on one rank become one part. With the same options, the next
+  /// steps have the results and events that they would have had without the restart. `objects` says what this
+  /// rank has now. Throws `Error` when the file cannot be read, is cut off or damaged.
+  void load(const std::string& path);
+
+  /// The objects of which this rank has all or a part, ascending.
+  std::vector<ObjectId> objects() const;
+  /// The numbers of the vertices of the part of an object that this rank has, ascending; empty for a whole
+  /// object. Valid until the object is removed.
+  std::span<const std::uint32_t> part_vertices(ObjectId id) const;
+  /// The positions that were last set, of the vertices that this rank has.
+  std::vector<Vec3d> positions(ObjectId id) const;
 
   int rank() const;
   int rank_count() const;
