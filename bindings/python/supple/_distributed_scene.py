@@ -11,6 +11,7 @@ import weakref
 from typing import Any, Callable
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _arrays, _core
 from ._contracts import contract
@@ -30,13 +31,19 @@ class DistributedObject(Handle):
     __slots__ = ()
 
     @property
-    def positions(self) -> Any:
-        """Set it to move the vertices that this rank added."""
-        raise AttributeError("a distributed scene does not return positions; they can only be set")
+    def positions(self) -> npt.NDArray[np.float64]:
+        """The positions of the vertices that this rank has, (n, 3), as a copy. Set it to move them."""
+        return self._scene._core.positions(self._id)
 
     @positions.setter
     def positions(self, value: Any) -> None:
         self._scene._core.set_positions(self._id, _arrays.positions(value))
+
+    @property
+    def part_vertices(self) -> npt.NDArray[np.uint32]:
+        """The numbers of the vertices of the part that this rank has, ascending, as a copy; empty for a whole
+        object."""
+        return self._scene._core.part_vertices(self._id)
 
     def __repr__(self) -> str:
         return f"<supple.DistributedObject {self.index}>"
@@ -199,6 +206,19 @@ object of any rank. The answer is a table with n rows; `found` says which have a
                 _arrays.number(max_distance, "max_distance"),
             )
         )
+
+    @contract("DistributedScene::save")
+    def save(self, path: str | os.PathLike[str]) -> None:
+        self._core.save(os.fspath(path))
+
+    @contract("DistributedScene::load")
+    def load(self, path: str | os.PathLike[str]) -> None:
+        self._core.load(os.fspath(path))
+
+    @property
+    def objects(self) -> list[DistributedObject]:
+        """The objects of which this rank has all or a part, by ascending id."""
+        return [DistributedObject(self, each) for each in self._core.objects()]
 
     @property
     def rank(self) -> int:

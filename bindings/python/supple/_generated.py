@@ -351,14 +351,24 @@ CONTRACTS = {
         'As `Scene.distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair.',
     'DistributedScene::earliest_impact':
         'As `Scene.earliest_impact`; the same on all ranks.',
+    'DistributedScene::load':
+        'Collective, for a scene without objects: adds those of a file of `save`, spread evenly over the ranks, however many wrote it. Parts of an object on one rank become one part. With the same options, the next steps have the results and events that they would have had without the restart. `objects` says what this rank has now. Throws `Error` when the file cannot be read, is cut off or damaged.',
     'DistributedScene::max_step':
         'As `Scene.max_step`; the same on all ranks.',
+    'DistributedScene::objects':
+        'The objects of which this rank has all or a part, ascending.',
+    'DistributedScene::part_vertices':
+        'The numbers of the vertices of the part of an object that this rank has, ascending; empty for a whole object. Valid until the object is removed.',
+    'DistributedScene::positions':
+        'The positions that were last set, of the vertices that this rank has.',
     'DistributedScene::rank':
         'See `DistributedScene::rank` in supple/distributed.hpp.',
     'DistributedScene::rank_count':
         'See `DistributedScene::rank_count` in supple/distributed.hpp.',
     'DistributedScene::remove':
         'Removes the object, or the part of it that this rank has.',
+    'DistributedScene::save':
+        'Collective: writes the objects of all ranks, with their options and positions, and what the events of the next step need, to one file. The file appears when it is whole: an older one stays until then. The options of the scene and the pair filter are not in it. Throws `Error` when the file cannot be written.',
     'DistributedScene::set_group':
         'See `DistributedScene::set_group` in supple/distributed.hpp.',
     'DistributedScene::set_margin':

@@ -1,6 +1,9 @@
 """Run by mpirun: the distributed scene finds what one scene finds. Each function is a test of all ranks."""
 
 import functools
+import pathlib
+import shutil
+import tempfile
 import threading
 
 import numpy as np
@@ -121,9 +124,21 @@ class Twin:
     def remove(self):
         self.each("remove")
 
+    def go_on_in(self, loaded):
+        """Takes the object of a scene that was loaded, where it is on other ranks."""
+        self.distributed = loaded
+        name = self.one.index, self.one.generation
+        self.mine = next((each for each in loaded.objects if (each.index, each.generation) == name), None)
+        if self.mine is not None:
+            self.vertices = self.mine.part_vertices
+            if not len(self.vertices):
+                self.vertices = np.arange(len(self.now))
+            assert np.array_equal(self.mine.positions, self.now[self.vertices], equal_nan=True)
+
 
 def random_scenes():
     found = 0
+    file = WORLD.bcast(tempfile.mkdtemp() if WORLD.rank == 0 else None) + "/scene"
     for seed in range(6):
         random = np.random.default_rng(seed)
         options = {
@@ -131,8 +146,7 @@ def random_scenes():
             "cluster_triangles": (16, 100, 2048)[seed % 3],
         }
         distributed = supple.DistributedScene(WORLD, threads=1, **options)
-        del options["cluster_triangles"]
-        one = supple.Scene(threads=1, **options)
+        one = supple.Scene(threads=1, contacts=options["contacts"])
         twins = [Twin(one, distributed, random) for _ in range(8)]
         last = []
         for step in range(5):
@@ -149,7 +163,7 @@ def random_scenes():
             if WORLD.rank == 0:
                 wanted = one.detect()
                 assert result.step == wanted.step == step
-                for name in set(wanted._names()) - {"untested"}:
+                for name in wanted._names():
                     assert_equal(result._list(name), wanted._list(name), name)
                 found += len(result)
                 last.append((result, {name: result._list(name).tobytes() for name in result._names()}))
@@ -166,11 +180,20 @@ def random_scenes():
             distances = distributed.distances(0.5)
             if WORLD.rank == 0:
                 assert_equal(distances, one.distances(0.5), "distances")
+            if step == 2 and seed % 2 == 0:
+                distributed.save(file)
+                distributed = supple.DistributedScene(WORLD, threads=1, **options)
+                distributed.load(pathlib.Path(file))
+                for each in twins:
+                    each.go_on_in(distributed)
         # Results that are held stay as they are.
         assert all(
             result._list(name).tobytes() == rows for result, lists in last for name, rows in lists.items()
         )
-    assert WORLD.rank != 0 or found > 1000, found
+    expect_on_all("scene", lambda: distributed.load(file + "s"))
+    if WORLD.rank == 0:
+        shutil.rmtree(pathlib.Path(file).parent)
+        assert found > 1000, found
 
 
 def placements():
@@ -280,7 +303,7 @@ def wrong_input():
     mesh = supple.make_icosphere(2)
     mine = scene.add(mesh, id=scene.rank)
     assert mine == scene.rank and mine.generation == 0
-    assert repr(mine) == f"<supple.DistributedObject {scene.rank}>" and not hasattr(mine, "positions")
+    assert repr(mine) == f"<supple.DistributedObject {scene.rank}>"
     triangle = np.zeros((3, 3)), [[0, 1, 2]]
     expect("id is -1", lambda: scene.add(mesh, id=-1))
     expect("id is 'ball'", lambda: scene.add(mesh, id="ball"))
@@ -297,7 +320,10 @@ def wrong_input():
     returned = scene.add(mesh, id=scene.rank, generation=1)
     expect("(generation 0) is not on this rank", lambda: scene.remove(scene.rank))
     scene.remove(returned)
-    assert len(scene.detect()) == 0
+    result = scene.detect(contacts=KINDS)
+    assert len(result) == 0 and scene.objects == []
+    if scene.rank == 0:
+        assert len(result.untested) == 4 and result.untested == supple.Scene(contacts=KINDS).detect().untested
 
 
 def other_communicators():

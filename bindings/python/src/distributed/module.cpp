@@ -7,6 +7,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
 
 #include <memory>
 #include <optional>
@@ -21,6 +22,7 @@ namespace supple::python {
 namespace {
 
 using Alone = CallGuard::Alone;
+using Together = CallGuard::Together;
 
 /// The distributed scene of Python.
 class DistributedCore {
@@ -117,10 +119,33 @@ NB_MODULE(_distributed, module) {
         return to_answers(answers);
       },
       nb::arg(), nb::arg().none(), nb::arg(), nb::arg());
+  scene.def("save", [](DistributedCore& core, const std::string& path) {
+    const Alone alone(core.guard());
+    const WithoutGil without_gil;
+    core.scene().save(path);
+  });
+  scene.def("load", [](DistributedCore& core, const std::string& path) {
+    const Alone alone(core.guard());
+    const WithoutGil without_gil;
+    core.scene().load(path);
+  });
+  scene.def("objects", [](DistributedCore& core) {
+    const Together together(core.guard());
+    return core.scene().objects();
+  });
+  scene.def("part_vertices", [](DistributedCore& core, ObjectId id) {
+    const Together together(core.guard());
+    const auto numbers = core.scene().part_vertices(id);
+    return to_own_array<std::uint32_t>(std::vector<std::uint32_t>(numbers.begin(), numbers.end()));
+  });
+  scene.def("positions", [](DistributedCore& core, ObjectId id) {
+    const Together together(core.guard());
+    return to_own_array<double, 3>(core.scene().positions(id));
+  });
   scene.def("rank", [](DistributedCore& core) { return core.scene().rank(); });
   scene.def("rank_count", [](DistributedCore& core) { return core.scene().rank_count(); });
   scene.def("stats", [](DistributedCore& core) {
-    const CallGuard::Together together(core.guard());
+    const Together together(core.guard());
     const DistributedStats& stats = core.scene().stats();
     nb::dict dict;
     dict["bytes_sent"] = stats.bytes_sent;
