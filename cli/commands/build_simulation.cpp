@@ -18,6 +18,12 @@ struct Adder {
   Simulation& simulation;
   TriangleMesh mesh;
   const ObjectOptions& options;
+  bool only_positions = false;  ///< without the elements
+
+  ObjectId add(const auto&... motion) {
+    if (only_positions) mesh = {mesh.name, std::move(mesh.positions), {}, {}, {}};
+    return simulation.add(mesh, options, motion...);
+  }
 
   ObjectId operator()(const WaveMotion& motion) {
     const auto swayed = [motion, border = simulation.options().border, rest = mesh.positions](
@@ -25,11 +31,11 @@ struct Adder {
       apply_wave_motion(motion, border, rest, seconds, positions);
     };
     swayed(0, mesh.positions);
-    return simulation.add(mesh, options, swayed);
+    return add(MotionFunction(swayed));
   }
 
-  ObjectId operator()(const MassSpringMotion& motion) { return simulation.add(mesh, options, motion); }
-  ObjectId operator()(const RigidMotion& motion) { return simulation.add(mesh, options, motion); }
+  ObjectId operator()(const MassSpringMotion& motion) { return add(motion); }
+  ObjectId operator()(const RigidMotion& motion) { return add(motion); }
 
   /// The step that ends at a time.
   auto step_at() const {
@@ -41,27 +47,23 @@ struct Adder {
   ObjectId operator()(const FrameSequence& sequence) {
     const auto frames = std::make_shared<const FrameFiles>(sequence, mesh);
     frames->read(0, mesh.positions);
-    return simulation.add(mesh, options,
-                          [step = step_at(), frames](double seconds, std::span<Vec3d> positions) {
-                            frames->read(step(seconds), positions);
-                          });
+    return add(MotionFunction([step = step_at(), frames](double seconds, std::span<Vec3d> positions) {
+      frames->read(step(seconds), positions);
+    }));
   }
 
   ObjectId operator()(const ComputedMotion& motion) {
     motion.positions(0, mesh.positions);
-    return simulation.add(
-        mesh, options,
-        [step = step_at(), read = motion.positions](double seconds, std::span<Vec3d> positions) {
-          read(step(seconds), positions);
-        });
+    return add(
+        MotionFunction([step = step_at(), read = motion.positions](
+                           double seconds, std::span<Vec3d> positions) { read(step(seconds), positions); }));
   }
 
   ObjectId operator()(const RecordedMotion& motion) {
-    return simulation.add(
-        mesh, options, [step = step_at(), motion](double seconds, std::span<Vec3d> positions) {
-          const std::vector<Vec3d> recorded = motion.recording->positions(step(seconds), motion.object);
-          std::copy(recorded.begin(), recorded.end(), positions.begin());
-        });
+    return add(MotionFunction([step = step_at(), motion](double seconds, std::span<Vec3d> positions) {
+      const std::vector<Vec3d> recorded = motion.recording->positions(step(seconds), motion.object);
+      std::copy(recorded.begin(), recorded.end(), positions.begin());
+    }));
   }
 };
 
@@ -77,6 +79,14 @@ void apply(const MethodOptions& options, Input& input) {
     object.splits = object.splits || options.parts;
   }
   split_parts(input);
+}
+
+ObjectId add_positions(Simulation& simulation, const InputObject& object) {
+  if (object.motion && std::holds_alternative<MassSpringMotion>(*object.motion))
+    return add_object(simulation, object);
+  const ObjectOptions options{.name = object.options.name};
+  Adder adder{simulation, object.mesh, options, true};
+  return object.motion ? std::visit(adder, *object.motion) : adder.add();
 }
 
 ObjectId add_object(Simulation& simulation, const InputObject& object) {

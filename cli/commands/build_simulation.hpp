@@ -12,6 +12,9 @@ void apply(const MethodOptions& options, Input& input);
 /// Adds an object of an input at its start positions. Throws `Error` as `Simulation::add` does, or when a
 /// frame of a sequence does not fit the object.
 ObjectId add_object(Simulation& simulation, const InputObject& object);
+/// The same for a simulation that only moves: without triangles, edges and points, as far as the motion does
+/// not need them.
+ObjectId add_positions(Simulation& simulation, const InputObject& object);
 /// Makes a simulation of the objects of an input, in their order. Throws `Error` as `add_object` does.
 Simulation build_simulation(const Input& input);
 

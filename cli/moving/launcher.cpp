@@ -45,7 +45,8 @@ void run_as_rank(const LaunchedProcess& process, char** arguments) {
   arguments[0] = name;
   execv(beside.c_str(), arguments);
   execvp(name, arguments);
-  if (process.rank != 0) std::_Exit(exit_unusable);  // rank 0 reports it
+  // Rank 0 reports it. The launcher ends the job at the first status that is not 0.
+  if (process.rank != 0) std::_Exit(exit_done);
   throw Error(fmt::format(
       "was started as {} processes, but the program supple-mpi is neither beside this program nor in PATH; "
       "build it with MPI and Zoltan, or start one process, without the launcher",

@@ -67,6 +67,11 @@ DistributedObjects::DistributedObjects(MpiRanks& ranks, Input& input, bool recor
 }
 
 void DistributedObjects::add_objects(Input& input) {
+  if (ranks_.rank() != 0) {
+    for (std::uint32_t i = 0; i < input.objects.size(); ++i) {
+      if (!is_mine(i)) input.objects[i].mesh = {};
+    }
+  }
   Input own;
   for (std::uint32_t i = first_of(ranks_.rank()); i < first_of(ranks_.rank() + 1); ++i) {
     InputObject& object = input.objects[i];
@@ -77,17 +82,14 @@ void DistributedObjects::add_objects(Input& input) {
     options.edges.insert(options.edges.end(), object.mesh.edges.begin(), object.mesh.edges.end());
     options.points.insert(options.points.end(), object.mesh.points.begin(), object.mesh.points.end());
     object.motion = numbered(std::move(object.motion), i);
-    const ObjectId id = add_object(simulation_, object);
+    const ObjectId id = add_positions(simulation_, object);
     scene_.add(ObjectId{i}, simulation_.positions(id), object.mesh.triangles, options);
     own.objects.push_back({{}, object.options, object.motion});
+    if (ranks_.rank() != 0) object.mesh = {};
   }
   before_.resize(own.objects.size());
   turns_.emplace(simulation_, own);
-  if (ranks_.rank() != 0) {
-    for (InputObject& object : input.objects) object.mesh = {};
-    return;
-  }
-  for (const InputObject& object : input.objects) fetched_.push_back(object.mesh.positions);
+  fetched_.resize(ranks_.rank() == 0 ? input.objects.size() : 0);
 }
 
 const DetectResult& DistributedObjects::detect(const DetectRequest&) {
@@ -165,11 +167,17 @@ void DistributedObjects::fetch_positions() {
           MPI_Send(positions.data(), static_cast<int>(3 * positions.size()), MPI_DOUBLE, 0, tag_of_positions,
                    MPI_COMM_WORLD);
       } else if (ranks_.rank() == 0) {
+        fetched_[i].resize(input_.objects[i].mesh.positions.size());
         MPI_Recv(fetched_[i].data(), static_cast<int>(3 * fetched_[i].size()), MPI_DOUBLE, owner,
                  tag_of_positions, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
       }
     }
   }
+}
+
+std::span<const Vec3d> DistributedObjects::positions(ObjectId object) const {
+  const InputObject& found = input_.objects[object.index];
+  return found.motion ? fetched_[object.index] : found.mesh.positions;
 }
 
 /// Each rank knows it of its own objects, which follow those of lower ranks.

@@ -24,7 +24,7 @@ class DistributedObjects : public MovingObjects {
   std::vector<ObjectId> turned() override;
   std::vector<BodyEnergy> energies() override;
   std::optional<std::string> warning_of_long_steps() override;
-  std::span<const Vec3d> positions(ObjectId object) const override { return fetched_[object.index]; }
+  std::span<const Vec3d> positions(ObjectId object) const override;
   int rank_count() const override { return ranks_.size(); }
 
  private:

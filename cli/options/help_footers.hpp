@@ -56,6 +56,8 @@ inline constexpr const char* detect_footer = R"(Examples:
       Check the result against exact brute force over all pairs of triangles.
   supple detect rabbit.obj fish.ply --object-octree regular --leaf-size 1 --node-pairs 0 1
       The narrow phase of the paper: the pairs of octree nodes that collide, level by level.
+  mpirun -n 8 supple detect scene.toml --json result.json
+      One scene on eight ranks of MPI, on one or several machines, with the result of one process.
   supple detect a.obj b.obj --json - --no-stats | sha256sum
       The same input gives the same bytes for any number of threads and any broad phase.)";
 
@@ -82,6 +84,8 @@ inline constexpr const char* simulate_footer = R"(Examples:
       machine.
   supple simulate scenes/cloth_over_ball.toml --contacts continuous --self
       Continuous contacts between two frames, including those of an object with itself.
+  mpirun -n 8 supple simulate scenes/nine.toml --record run.h5
+      The objects on eight ranks of MPI, with the motion, contacts and recording of one process.
   supple simulate scenes/soft_block.toml --time-step 0.001
       Shorter steps than in the scene file.
 
