@@ -70,6 +70,15 @@ class Reader {
     values.resize(first + count);
     take(values.data() + first, count * sizeof(Value));
   }
+  /// The bytes of the values that `put_all` wrote, in the message.
+  template <Plain Value>
+  std::span<const std::byte> bytes_of_all() {
+    const auto count = static_cast<std::size_t>(get<std::uint64_t>());
+    if (count > rest_.size() / sizeof(Value)) fail(ends_early);
+    const std::span<const std::byte> bytes = rest_.first(count * sizeof(Value));
+    rest_ = rest_.subspan(bytes.size());
+    return bytes;
+  }
   template <Plain Value>
   std::vector<Value> get_all() {
     std::vector<Value> values;

@@ -71,13 +71,20 @@ void Communicator::agree(bool failed, const std::string& error) const {
   throw SharedError("rank " + std::to_string(first) + ": " + message);
 }
 
-void Communicator::exchange(const Outbox& outbox, Inbox& inbox) {
+void Communicator::exchange(Outbox& outbox, Inbox& inbox) {
   ranks_.clear();
   sizes_.clear();
   sent_.clear();
+  inbox.messages_.clear();
+  inbox.own_.clear();
   // Each message starts with its sender and its size in bytes, and is filled up to whole words.
-  for (const auto& [rank, bytes] : outbox.messages()) {
+  for (auto& [rank, bytes] : outbox.messages_) {
     if (bytes.empty()) continue;
+    if (rank == rank_) {
+      inbox.own_.swap(bytes);
+      inbox.messages_.push_back({rank_, inbox.own_});
+      continue;
+    }
     const std::uint64_t head[] = {static_cast<std::uint64_t>(rank_), bytes.size()};
     const std::size_t first = sent_.size();
     const std::size_t words = sizeof head / word + (bytes.size() + word - 1) / word;
@@ -86,7 +93,6 @@ void Communicator::exchange(const Outbox& outbox, Inbox& inbox) {
     std::memcpy(sent_.data() + first + sizeof head, bytes.data(), bytes.size());
     ranks_.push_back(rank);
     sizes_.push_back(static_cast<int>(words));
-    if (rank == rank_) continue;
     ++messages_sent;
     bytes_sent += words * word;
   }
@@ -95,21 +101,25 @@ void Communicator::exchange(const Outbox& outbox, Inbox& inbox) {
   bool is_ok = Zoltan_Comm_Create(&plan, static_cast<int>(ranks_.size()), ranks_.data(), handle_, tag_of_plan,
                                   &incoming) == 0;
   is_ok = is_ok && Zoltan_Comm_Resize(plan, sizes_.data(), tag_of_sizes, &incoming_words) == 0;
-  inbox.bytes_.resize(static_cast<std::size_t>(incoming_words) * word);
+  inbox.received_.resize(static_cast<std::size_t>(incoming_words) * word);
   is_ok = is_ok && Zoltan_Comm_Do(plan, tag_of_data, sent_.data(), static_cast<int>(word),
-                                  reinterpret_cast<char*>(inbox.bytes_.data())) == 0;
+                                  reinterpret_cast<char*>(inbox.received_.data())) == 0;
   Zoltan_Comm_Destroy(&plan);
   if (!is_ok) fail("the exchange of messages between ranks failed; Zoltan or MPI ran out of memory");
-  inbox.messages_.clear();
-  for (std::size_t first = 0; first < inbox.bytes_.size();) {
+  const std::span<const std::byte> received(inbox.received_);
+  for (std::size_t first = 0; first < received.size();) {
     std::uint64_t head[2];
-    std::memcpy(head, inbox.bytes_.data() + first, sizeof head);
+    std::memcpy(head, received.data() + first, sizeof head);
     const auto size = static_cast<std::size_t>(head[1]);
-    inbox.messages_.push_back({static_cast<int>(head[0]), first + sizeof head, size});
+    inbox.messages_.push_back({static_cast<int>(head[0]), received.subspan(first + sizeof head, size)});
     first += sizeof head + (size + word - 1) / word * word;
   }
   std::sort(inbox.messages_.begin(), inbox.messages_.end(),
             [](const auto& p, const auto& q) { return p.from < q.from; });
+}
+
+void Communicator::release() {
+  sent_ = {};
 }
 
 }  // namespace supple

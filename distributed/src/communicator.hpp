@@ -28,9 +28,11 @@ class Outbox {
   void clear() {
     for (auto& [rank, bytes] : messages_) bytes.clear();
   }
-  const std::map<int, std::vector<std::byte>>& messages() const { return messages_; }
+  /// Gives its memory back.
+  void release() { messages_.clear(); }
 
  private:
+  friend class Communicator;
   std::map<int, std::vector<std::byte>> messages_;
 };
 
@@ -40,19 +42,21 @@ class Inbox {
   /// Calls `read(reader, rank)` for each message.
   template <class Read>
   void for_each(const Read& read) const {
-    for (const Message& message : messages_) {
-      Reader reader(std::span<const std::byte>(bytes_).subspan(message.first, message.size));
-      read(reader, message.from);
+    for (const auto& [from, bytes] : messages_) {
+      Reader reader(bytes);
+      read(reader, from);
     }
   }
+  /// Forgets the messages and gives their memory back.
+  void release() { *this = {}; }
 
  private:
   friend class Communicator;
   struct Message {
     int from = 0;
-    std::size_t first = 0, size = 0;
+    std::span<const std::byte> bytes;
   };
-  std::vector<std::byte> bytes_;
+  std::vector<std::byte> received_, own_;  // by other ranks, and by this one
   std::vector<Message> messages_;
 };
 
@@ -87,8 +91,11 @@ class Communicator {
     agree(failed, error);
   }
   /// Collective: each rank sends its messages and gets those to it. Only ranks with a message for each other
-  /// communicate.
-  void exchange(const Outbox& outbox, Inbox& inbox);
+  /// communicate. The messages in `outbox` are undefined afterwards, and those in `inbox` are valid until its
+  /// next exchange.
+  void exchange(Outbox& outbox, Inbox& inbox);
+  /// Gives the memory of messages back.
+  void release();
   // Collective: each number becomes the sum or the largest of those of all ranks.
   void sum(std::vector<double>& numbers) const;
   void sum(std::vector<std::uint64_t>& numbers) const;
@@ -103,7 +110,7 @@ class Communicator {
   MPI_Comm handle_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   // Scratch memory.
-  std::vector<int> ranks_, sizes_, senders_, received_sizes_;
+  std::vector<int> ranks_, sizes_;
   std::vector<char> sent_;
 };
 

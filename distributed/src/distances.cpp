@@ -16,7 +16,7 @@ std::vector<ProximityPair> DistributedScene::Implementation::distances(double ma
   question_ = {};
   prepare(true, std::min(growth, double{std::numeric_limits<float>::max()}));
   ranks.together([&] {
-    for (auto& [rank, lists] : outgoing_) lists.clear();
+    clear_lists();
     for (const ProximityPair& pair : Queries(world()).distances(max_distance, {})) {
       const ProximityPair found = named(pair);
       lists_of(found.object_a).proximity_pairs.push_back(found);

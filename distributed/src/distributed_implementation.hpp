@@ -101,6 +101,7 @@ class DistributedScene::Implementation {
   void take_clusters();
 
   std::optional<ContinuousContact> first_of_all(const std::optional<ContinuousContact>& own);
+  void clear_lists();
   void send_lists();
 
   ObjectId user(ObjectId local) const { return local_.user_object(local.index); }

@@ -1,6 +1,8 @@
 #include "local_world.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <utility>
@@ -34,26 +36,25 @@ void clear(Coordinates& coordinates, bool is_double, std::size_t vertices) {
   coordinates.floats.assign(is_double ? 0 : 3 * vertices, std::numeric_limits<float>::quiet_NaN());
 }
 
-void write(const Coordinates& from, std::span<const std::uint32_t> vertices, Coordinates& to) {
+/// Writes x y z of a message to the places of these vertices.
+template <class From, class To>
+void scatter(std::span<const std::byte> from, std::span<const std::uint32_t> vertices, std::vector<To>& to) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t at = 3 * vertices[i] + axis;
-      if (to.is_double) {
-        to.doubles[at] = from.is_double ? from.doubles[3 * i + axis] : double{from.floats[3 * i + axis]};
-      } else {
-        to.floats[at] = from.floats[3 * i + axis];
-      }
-    }
+    std::array<From, 3> xyz;
+    std::memcpy(xyz.data(), from.data() + i * sizeof xyz, sizeof xyz);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      to[3 * std::size_t{vertices[i]} + axis] = static_cast<To>(xyz[axis]);
   }
 }
 
-void read(Reader& from, bool is_double, Coordinates& to) {
-  to.clear();
-  to.is_double = is_double;
+void scatter(std::span<const std::byte> from, bool is_double, std::span<const std::uint32_t> vertices,
+             Coordinates& to) {
   if (is_double) {
-    from.append_all(to.doubles);
+    scatter<double>(from, vertices, to.doubles);
+  } else if (to.is_double) {
+    scatter<float>(from, vertices, to.doubles);
   } else {
-    from.append_all(to.floats);
+    scatter<float>(from, vertices, to.floats);
   }
 }
 
@@ -97,9 +98,13 @@ void LocalWorld::read_cluster(const ClusterName& name, std::uint64_t version, bo
   cluster->is_needed = true;
   cluster->version = version;
   if (!has_positions) return;
-  const bool is_double = from.get<bool>(), has_start = from.get<bool>();
-  if (has_start) read(from, is_double, cluster->start);
-  read(from, is_double, cluster->end);
+  cluster->is_double = from.get<bool>();
+  const bool has_start = from.get<bool>();
+  const auto moment = [&] {
+    return cluster->is_double ? from.bytes_of_all<double>() : from.bytes_of_all<float>();
+  };
+  if (has_start) cluster->start = moment();
+  cluster->end = moment();
 }
 
 void LocalWorld::end(bool are_whole) {
@@ -159,7 +164,7 @@ void LocalWorld::place(GuestObject& object) {
   bool is_new = object.slot == none, has_changed = is_new;
   for (const GuestCluster& cluster : object.clusters) {
     is_new = is_new || cluster.is_new;
-    has_changed = has_changed || is_new || cluster.end.size() != 0 || cluster.is_needed != cluster.was_needed;
+    has_changed = has_changed || is_new || !cluster.end.empty() || cluster.is_needed != cluster.was_needed;
   }
   if (!has_changed) return;
   bool is_double = false, has_start = false;
@@ -168,9 +173,9 @@ void LocalWorld::place(GuestObject& object) {
       cluster.version = 0;
       continue;
     }
-    if (cluster.end.size() == 0 && !cluster.vertices.empty()) fetch(object, cluster);
-    is_double = is_double || cluster.end.is_double;
-    has_start = has_start || cluster.start.size() != 0;
+    if (cluster.end.empty() && !cluster.vertices.empty()) fetch(object, cluster);
+    is_double = is_double || cluster.is_double;
+    has_start = has_start || !cluster.start.empty();
   }
   if (is_new) number_vertices(object);
   clear(end_, is_double, object.vertices.size());
@@ -178,10 +183,11 @@ void LocalWorld::place(GuestObject& object) {
   for (GuestCluster& cluster : object.clusters) {
     cluster.is_new = false;
     if (!cluster.is_needed) continue;
-    if (has_start) write(cluster.start.size() != 0 ? cluster.start : cluster.end, cluster.local, start_);
-    write(cluster.end, cluster.local, end_);
-    cluster.start.clear();
-    cluster.end.clear();
+    if (has_start)
+      scatter(cluster.start.empty() ? cluster.end : cluster.start, cluster.is_double, cluster.local, start_);
+    scatter(cluster.end, cluster.is_double, cluster.local, end_);
+    cluster.start = cluster.end = {};
+    cluster.kept = {};
   }
   if (is_new) {
     if (object.slot != none) world_.remove(world_.id_of(object.slot));
@@ -201,23 +207,23 @@ void LocalWorld::place(GuestObject& object) {
 /// Takes the positions that a cluster had in the last step.
 void LocalWorld::fetch(const GuestObject& object, GuestCluster& cluster) const {
   const Placement& placement = world_[object.slot].placement();
-  const auto take = [&](Coordinates& to, const auto& position) {
-    clear(to, placement.is_double(), cluster.local.size());
-    for (std::size_t i = 0; i < cluster.local.size(); ++i) {
-      const Vec3d p = position(cluster.local[i]);
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::size_t at = 3 * i + static_cast<std::size_t>(axis);
-        if (to.is_double) {
-          to.doubles[at] = p[axis];
-        } else {
-          to.floats[at] = static_cast<float>(p[axis]);
-        }
+  cluster.is_double = placement.is_double();
+  Writer to(cluster.kept);
+  const auto put = [&](const auto& position) {
+    for (const std::uint32_t v : cluster.local) {
+      const Vec3d p = position(v);
+      if (cluster.is_double) {
+        to.put(std::array{p.x, p.y, p.z});
+      } else {
+        to.put(std::array{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
       }
     }
   };
-  if (placement.has_motion())
-    take(cluster.start, [&](std::uint32_t v) { return placement.start_position(v); });
-  take(cluster.end, [&](std::uint32_t v) { return placement.position(v); });
+  if (placement.has_motion()) put([&](std::uint32_t v) { return placement.start_position(v); });
+  const std::size_t of_start = to.size();
+  put([&](std::uint32_t v) { return placement.position(v); });
+  cluster.start = std::span<const std::byte>(cluster.kept).first(of_start);
+  cluster.end = std::span<const std::byte>(cluster.kept).subspan(of_start);
 }
 
 ObjectId LocalWorld::add(GuestObject& object, const PositionsView& positions) {

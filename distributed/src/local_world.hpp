@@ -76,7 +76,10 @@ class LocalWorld {
     std::vector<std::uint32_t> local;            ///< the vertices in the object of the world
     std::uint64_t version = 0;
     bool is_needed = false, was_needed = false, is_new = true;
-    Coordinates start, end;  ///< until the object is placed
+    // Until the object is placed: x y z in the message, or what the cluster keeps of the last step.
+    bool is_double = true;
+    std::span<const std::byte> start, end;
+    std::vector<std::byte> kept;
   };
   struct GuestObject {
     ObjectId id;

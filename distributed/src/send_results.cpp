@@ -204,11 +204,17 @@ void DistributedScene::Implementation::send_penetrations(const DetectResult& fou
   }
 }
 
-/// Fills the messages, and keeps what is of this rank.
+/// The last result is no longer valid: this one takes its memory.
+void DistributedScene::Implementation::clear_lists() {
+  std::swap(lists_, outgoing_[ranks.rank()]);
+  for (auto& [rank, lists] : outgoing_) lists.clear();
+}
+
+/// Fills the lists for each rank.
 void DistributedScene::Implementation::send_results() {
   DetectResult found;
   detection_.list(found);
-  for (auto& [rank, lists] : outgoing_) lists.clear();
+  clear_lists();
   send_groups(found.groups, found.contacts, PairList::contacts, [&](Contact contact, FoundLists& lists) {
     const std::span<const ContactPoint> points = found.points_of(contact);
     contact.first_point = static_cast<std::uint32_t>(lists.contact_points.size());
