@@ -80,6 +80,7 @@ Input read_input(const DetectOptions& options, Ranks& ranks) {
   apply(options, input);
   if (is_one_mesh(options.inputs, input) && has_proximity(options.scene))
     input.objects.front().options.self_collision = true;
+  ranks.check(options, input);
   return input;
 }
 
@@ -92,7 +93,6 @@ int run_detect(const DetectOptions& given, Ranks& ranks) {
   ranks.together([&] {
     input = read_input(options, ranks);
     frames = count_frames(input, options);
-    ranks.check(options, input, frames > 1);
   });
   if (ranks.size() == 1) warn_of_missing_threads(options.scene.threads);
   const bool prints_text = !options.quiet && options.json != "-" && options.csv != "-";

@@ -207,7 +207,7 @@ int run_simulate(const SimulateOptions& given, Ranks& ranks) {
                         {"the .xdmf file of --record", xdmf}},
                        input.files);
     apply(options, input);
-    ranks.check(options, input, true);
+    ranks.check(options, input);
   });
   if (ranks.size() == 1) warn_of_missing_threads(options.scene.threads);
   const std::unique_ptr<MovingObjects> objects = ranks.move(input, !given.record.empty());

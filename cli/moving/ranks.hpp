@@ -23,9 +23,8 @@ class Ranks {
   virtual void together(const std::function<void()>& work) { work(); }
   /// The largest of the numbers of all ranks.
   virtual int largest(int number) { return number; }
-  /// Throws `Error` when several ranks cannot do what the options or the input want. `has_steps` says that
-  /// objects move.
-  virtual void check(const DetectionOptions&, const Input&, [[maybe_unused]] bool has_steps) {}
+  /// Throws `Error` when several ranks cannot do what the options or the input want.
+  virtual void check(const DetectionOptions&, const Input&) {}
   /// Ranks other than 0 lose the meshes of the input. `records` says that a recording needs all positions.
   virtual std::unique_ptr<MovingObjects> move(Input& input, [[maybe_unused]] bool records) {
     return std::make_unique<MovingObjects>(input);

@@ -45,9 +45,15 @@ std::optional<Motion> numbered(std::optional<Motion> motion, std::uint64_t numbe
   return motion;
 }
 
-/// The simulation of one rank finds no contacts to respond to.
-SimulationOptions options_of_rank(SimulationOptions options, const MpiRanks& ranks) {
-  options.response.reset();
+bool has_response(const Input& input) {
+  return input.simulation.response && std::ranges::any_of(input.objects, [](const InputObject& object) {
+           return object.motion && std::holds_alternative<MassSpringMotion>(*object.motion);
+         });
+}
+
+SimulationOptions options_of_rank(const Input& input, const MpiRanks& ranks) {
+  SimulationOptions options = input.simulation;
+  if (!has_response(input)) options.response.reset();
   if (options.scene.threads == 0) options.scene.threads = ranks.default_threads();
   return options;
 }
@@ -55,11 +61,12 @@ SimulationOptions options_of_rank(SimulationOptions options, const MpiRanks& ran
 }  // namespace
 
 DistributedObjects::DistributedObjects(MpiRanks& ranks, Input& input, bool records)
-    : MovingObjects(options_of_rank(input.simulation, ranks)),
+    : MovingObjects(options_of_rank(input, ranks)),
       ranks_(ranks),
       input_(input),
       is_continuous_(contains(input.simulation.scene.contacts, ContactKinds::continuous)),
       records_(records),
+      moves_all_(has_response(input)),
       firsts_(firsts_of(input, ranks.size())),
       scene_(MPI_COMM_WORLD, {.scene = simulation_.options().scene}) {
   no_detection_.request_stop();
@@ -69,11 +76,12 @@ DistributedObjects::DistributedObjects(MpiRanks& ranks, Input& input, bool recor
 void DistributedObjects::add_objects(Input& input) {
   if (ranks_.rank() != 0) {
     for (std::uint32_t i = 0; i < input.objects.size(); ++i) {
-      if (!is_mine(i)) input.objects[i].mesh = {};
+      if (!moves(i)) input.objects[i].mesh = {};
     }
   }
   Input own;
-  for (std::uint32_t i = first_of(ranks_.rank()); i < first_of(ranks_.rank() + 1); ++i) {
+  for (std::uint32_t i = 0; i < input.objects.size(); ++i) {
+    if (!moves(i)) continue;
     InputObject& object = input.objects[i];
     ObjectOptions options = object.options;
     options.name = input.name(ObjectId{i});
@@ -82,8 +90,8 @@ void DistributedObjects::add_objects(Input& input) {
     options.edges.insert(options.edges.end(), object.mesh.edges.begin(), object.mesh.edges.end());
     options.points.insert(options.points.end(), object.mesh.points.begin(), object.mesh.points.end());
     object.motion = numbered(std::move(object.motion), i);
-    const ObjectId id = add_positions(simulation_, object);
-    scene_.add(ObjectId{i}, simulation_.positions(id), object.mesh.triangles, options);
+    const ObjectId id = moves_all_ ? add_object(simulation_, object) : add_positions(simulation_, object);
+    if (is_mine(i)) scene_.add(ObjectId{i}, simulation_.positions(id), object.mesh.triangles, options);
     own.objects.push_back({{}, object.options, object.motion});
     if (ranks_.rank() != 0) object.mesh = {};
   }
@@ -183,7 +191,7 @@ std::span<const Vec3d> DistributedObjects::positions(ObjectId object) const {
 /// Each rank knows it of its own objects, which follow those of lower ranks.
 std::vector<ObjectId> DistributedObjects::turned() {
   std::vector<std::uint8_t> has_turned(input_.objects.size(), 0);
-  for (const ObjectId object : turns_->find()) has_turned[first_of(ranks_.rank()) + object.index] = 1;
+  for (const ObjectId object : turns_->find()) has_turned[number_of(object)] = 1;
   MPI_Allreduce(MPI_IN_PLACE, has_turned.data(), static_cast<int>(has_turned.size()), MPI_UINT8_T, MPI_MAX,
                 MPI_COMM_WORLD);
   std::vector<ObjectId> turned;
@@ -197,8 +205,7 @@ std::vector<BodyEnergy> DistributedObjects::energies() {
   std::vector<MassSpringEnergy> all(input_.objects.size());
   std::vector<std::byte> bytes(all.size() * sizeof all[0]);
   for (const auto& [object, energy] : MovingObjects::energies())
-    std::memcpy(bytes.data() + (first_of(ranks_.rank()) + object.index) * sizeof energy, &energy,
-                sizeof energy);
+    std::memcpy(bytes.data() + number_of(object) * sizeof energy, &energy, sizeof energy);
   MPI_Allreduce(MPI_IN_PLACE, bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, MPI_BOR,
                 MPI_COMM_WORLD);
   std::memcpy(all.data(), bytes.data(), bytes.size());
@@ -212,7 +219,8 @@ std::vector<BodyEnergy> DistributedObjects::energies() {
 
 std::optional<std::string> DistributedObjects::warning_of_long_steps() {
   viewer::LongSteps steps = viewer::find_long_steps(simulation_);
-  steps.worst.index += first_of(ranks_.rank());
+  steps.worst.index = number_of(steps.worst);
+  if (moves_all_ && ranks_.rank() != 0) steps.count = 0;  // rank 0 has counted them
   std::vector<viewer::LongSteps> of_ranks(static_cast<std::size_t>(ranks_.size()));
   MPI_Gather(&steps, sizeof steps, MPI_BYTE, of_ranks.data(), sizeof steps, MPI_BYTE, 0, MPI_COMM_WORLD);
   if (ranks_.rank() != 0) return std::nullopt;

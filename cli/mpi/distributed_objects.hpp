@@ -14,7 +14,9 @@
 namespace supple::cli {
 
 /// The objects of an input on several ranks. Each rank moves a run of consecutive objects, with about as many
-/// triangles as the others; a distributed scene finds the contacts, which are on rank 0.
+/// triangles as the others; a distributed scene finds the contacts, which are on rank 0. Where bodies respond
+/// to contacts, each rank moves all objects: the impulses on a body depend on those on all others, in the
+/// order of the contacts.
 class DistributedObjects : public MovingObjects {
  public:
   DistributedObjects(MpiRanks& ranks, Input& input, bool records);
@@ -37,12 +39,16 @@ class DistributedObjects : public MovingObjects {
   bool is_mine(std::uint32_t object) const {
     return object >= first_of(ranks_.rank()) && object < first_of(ranks_.rank() + 1);
   }
-  /// The number of an object of this rank in its simulation.
-  ObjectId local(std::uint32_t object) const { return {object - first_of(ranks_.rank())}; }
+  bool moves(std::uint32_t object) const { return moves_all_ || is_mine(object); }
+  // The numbers of an object in the simulation of this rank and among all.
+  ObjectId local(std::uint32_t object) const { return {object - number_of({0})}; }
+  std::uint32_t number_of(ObjectId of_simulation) const {
+    return of_simulation.index + (moves_all_ ? 0 : first_of(ranks_.rank()));
+  }
 
   MpiRanks& ranks_;
   const Input& input_;
-  bool is_continuous_, records_;
+  bool is_continuous_, records_, moves_all_;
   std::vector<std::uint32_t> firsts_;  ///< the first object of each rank, and the number of objects
   DistributedScene scene_;
   DetectResult result_;

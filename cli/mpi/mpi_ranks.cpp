@@ -44,8 +44,8 @@ int MpiRanks::largest(int number) {
   return number;
 }
 
-void MpiRanks::check(const DetectionOptions& options, const Input& input, bool has_steps) {
-  refuse_options(options, input, has_steps);
+void MpiRanks::check(const DetectionOptions& options, const Input& input) {
+  refuse_options(options, input);
 }
 
 std::unique_ptr<MovingObjects> MpiRanks::move(Input& input, bool records) {

@@ -24,7 +24,7 @@ class MpiRanks : public Ranks {
   /// lowest rank that failed.
   void together(const std::function<void()>& work) override;
   int largest(int number) override;
-  void check(const DetectionOptions& options, const Input& input, bool has_steps) override;
+  void check(const DetectionOptions& options, const Input& input) override;
   std::unique_ptr<MovingObjects> move(Input& input, bool records) override;
 
   /// Collective: the text of the lowest rank that has one.

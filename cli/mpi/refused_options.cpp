@@ -3,22 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <variant>
 
 #include "base/text.hpp"
 #include "options/option_needs.hpp"
 #include "supple/error.hpp"
 
 namespace supple::cli {
-namespace {
-
-bool is_mass_spring(const InputObject& object) {
-  return object.motion && std::holds_alternative<MassSpringMotion>(*object.motion);
-}
-
-}  // namespace
-
-void refuse_options(const DetectionOptions& options, const Input& input, bool has_steps) {
+void refuse_options(const DetectionOptions& options, const Input& input) {
   const SceneOptions& scene = input.simulation.scene;
   const struct {
     bool is_given;
@@ -35,8 +26,6 @@ void refuse_options(const DetectionOptions& options, const Input& input, bool ha
        "continuous listing first"},
       {std::ranges::any_of(input.objects, [](const InputObject& object) { return object.options.weld; }),
        "weld"},
-      {has_steps && input.simulation.response && std::ranges::any_of(input.objects, is_mass_spring),
-       "the response of masses and springs to contacts"},
   };
   for (const auto& [is_given, what] : refused) {
     if (is_given)

@@ -5,7 +5,7 @@
 
 namespace supple::cli {
 
-/// Throws `Error` for what several ranks do not have. `has_steps` says that objects move.
-void refuse_options(const DetectionOptions& options, const Input& input, bool has_steps);
+/// Throws `Error` for what several ranks do not have.
+void refuse_options(const DetectionOptions& options, const Input& input);
 
 }  // namespace supple::cli

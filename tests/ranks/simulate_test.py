@@ -30,11 +30,12 @@ class Simulate(RanksTest):
         self.assertEqual(reports[0], reports[1])
         self.assertEqual(reports[0], reports[2])
 
-    def test_a_response_is_refused(self):
-        status, out, error, _ = self.written(2, "simulate", [SCENES / "rabbit_pile.toml"], [])
-        self.assertEqual((status, out), (2, ""))
-        self.assertEqual(error, "supple: the response of masses and springs to contacts: several ranks do not have it; "
-                                "leave it out, or start one process")
+    def test_bodies_that_respond(self):
+        """Each body depends on those that others touch."""
+        for scene, ranks in (("rabbit_pile", 2), ("fish_tank", 3)):
+            out = self.assert_same(SCENES / f"{scene}.toml", "--frames", 12, command="simulate", csv=False, ranks=(ranks,))
+            self.assertIn("energy", out)
+        self.assert_same(SCENES / "cloth_over_ball.toml", "--frames", 12, command="detect", csv=False, ranks=(2,))
 
     def test_a_motion_that_blows_up(self):
         scene = self.write("scene.toml", """
