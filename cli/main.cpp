@@ -64,9 +64,11 @@ int run(const CommandLine& line) {
 int main(int argument_count, char** arguments) {
   using namespace supple::cli;
   return run_program([&] {
-    if (const LaunchedProcess process = launched_process(); process.size > 1) run_as_rank(process, arguments);
     const std::string_view first = argument_count > 1 ? arguments[1] : "";
     if (first == "experiment") run_experiments(arguments + 1);
+    // The Python package starts experiments and `view --export` from ranks of its own.
+    if (const LaunchedProcess process = launched_process(); process.size > 1 && first != "view")
+      run_as_rank(process, arguments);
     // The documents describe the options of all commands, also those of experiments.
     if (first == "--generate") run_experiments(arguments);
     return run(parse_command_line(argument_count, arguments));

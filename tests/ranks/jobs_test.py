@@ -75,6 +75,14 @@ class Jobs(RanksTest):
         self.assertEqual(error, "supple: only detect and simulate run on several ranks; start one process, "
                                 "without the launcher")
 
+    def test_commands_that_ranks_of_python_start(self):
+        """Each is a process of its own."""
+        of_a_rank = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "2"}
+        for arguments in (["experiment", "--help"], ["view", "--help"]):
+            alone = launch(0, *arguments)
+            self.assertIn("Usage", alone.stdout)
+            self.assertEqual(launch(0, *arguments, **of_a_rank).stdout, alone.stdout)
+
     def test_a_program_without_mpi_refuses(self):
         shutil.copy(PROGRAM, self.folder / "supple")
         done = subprocess.run([MPIEXEC, "-n", "2", self.folder / "supple", "detect", "a.obj"], capture_output=True,
