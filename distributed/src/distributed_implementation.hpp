@@ -103,6 +103,7 @@ class DistributedScene::Implementation {
   std::optional<ContinuousContact> first_of_all(const std::optional<ContinuousContact>& own);
   void clear_lists();
   void send_lists();
+  void release_messages();
 
   ObjectId user(ObjectId local) const { return local_.user_object(local.index); }
   Vec3d lower_corner(ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element,

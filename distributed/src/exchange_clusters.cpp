@@ -367,11 +367,7 @@ void DistributedScene::Implementation::fetch_clusters() {
     world().set_filter([this](ObjectId a, ObjectId b) { return is_tested(a, b); });
     for (const ObjectId id : world().objects()) world().set_self_collision(id, is_tested(id, id));
   });
-  if (!stats.divided) return;
-  // The messages had the topology of most clusters; the next ones are smaller.
-  outbox_.release();
-  inbox_.release();
-  ranks.release();
+  release_messages();  // the search needs the memory
 }
 
 /// Brings all that this rank tests into its world: whole objects, or clusters. Boxes grow by `growth` besides

@@ -249,6 +249,13 @@ void DistributedScene::Implementation::send_lists() {
     inbox_.for_each([&](Reader& from, int) { lists_.append(from); });
     lists_.sort();
   });
+  release_messages();
+}
+
+void DistributedScene::Implementation::release_messages() {
+  outbox_.release();
+  inbox_.release();
+  ranks.release();
 }
 
 }  // namespace supple
