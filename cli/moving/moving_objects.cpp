@@ -1,12 +1,25 @@
 #include "moving/moving_objects.hpp"
 
 #include "commands/build_simulation.hpp"
+#include "inputs/half_turns.hpp"
+#include "inputs/inputs.hpp"
 #include "session/messages/long_steps.hpp"
 
 namespace supple::cli {
 
 MovingObjects::MovingObjects(const Input& input) : simulation_(build_simulation(input)) {
-  turns_.emplace(simulation_, input);
+  turns_ = std::make_unique<HalfTurns>(simulation_, input);
+}
+
+MovingObjects::MovingObjects(const SimulationOptions& options) : simulation_(options) {}
+MovingObjects::~MovingObjects() = default;
+
+void MovingObjects::remember_positions() {
+  turns_->remember_positions();
+}
+
+std::vector<ObjectId> MovingObjects::turned() {
+  return turns_->find();
 }
 
 std::vector<BodyEnergy> MovingObjects::energies() {

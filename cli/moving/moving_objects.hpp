@@ -1,16 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "inputs/half_turns.hpp"
-#include "inputs/inputs.hpp"
 #include "supple/simulation.hpp"
 
 namespace supple::cli {
+
+class HalfTurns;
+struct Input;
 
 /// The energy of a body of masses and springs.
 struct BodyEnergy {
@@ -24,7 +26,7 @@ class MovingObjects {
  public:
   /// Throws `Error` as `build_simulation` does.
   explicit MovingObjects(const Input& input);
-  virtual ~MovingObjects() = default;
+  virtual ~MovingObjects();
   MovingObjects(const MovingObjects&) = delete;
   MovingObjects& operator=(const MovingObjects&) = delete;
 
@@ -32,9 +34,9 @@ class MovingObjects {
   virtual const DetectResult& detect(const DetectRequest& request) { return simulation_.detect(request); }
   virtual const DetectResult& step(const DetectRequest& request) { return simulation_.step(request); }
   /// Call it before a step whose `turned` is read.
-  void remember_positions() { turns_->remember_positions(); }
+  void remember_positions();
   /// The objects whose straight paths in the last step are not their motion, ascending.
-  virtual std::vector<ObjectId> turned() { return turns_->find(); }
+  virtual std::vector<ObjectId> turned();
   /// Of all bodies, ascending by object. Of several ranks, only rank 0 knows it.
   virtual std::vector<BodyEnergy> energies();
   /// See `viewer::warning_of_long_steps`.
@@ -52,10 +54,10 @@ class MovingObjects {
 
  protected:
   /// Without objects.
-  explicit MovingObjects(const SimulationOptions& options) : simulation_(options) {}
+  explicit MovingObjects(const SimulationOptions& options);
 
   Simulation simulation_;  ///< of the objects in this process
-  std::optional<HalfTurns> turns_;
+  std::unique_ptr<HalfTurns> turns_;
 };
 
 }  // namespace supple::cli

@@ -4,9 +4,11 @@
 #include <memory>
 
 #include "moving/moving_objects.hpp"
-#include "options/options.hpp"
 
 namespace supple::cli {
+
+struct DetectionOptions;
+struct Input;
 
 /// The processes of a run. This class is the only one; `MpiRanks` is one of several. All ranks make the calls
 /// that are not const in the same order. Rank 0 writes what users read.

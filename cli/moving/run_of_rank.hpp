@@ -4,6 +4,7 @@
 
 #include "base/interruption.hpp"
 #include "moving/ranks.hpp"
+#include "options/options.hpp"
 
 namespace supple::cli {
 

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 
 #include "commands/build_simulation.hpp"
+#include "inputs/half_turns.hpp"
+#include "inputs/inputs.hpp"
 #include "session/messages/long_steps.hpp"
 #include "supple/error.hpp"
 
@@ -96,7 +99,7 @@ void DistributedObjects::add_objects(Input& input) {
     if (ranks_.rank() != 0) object.mesh = {};
   }
   before_.resize(own.objects.size());
-  turns_.emplace(simulation_, own);
+  turns_ = std::make_unique<HalfTurns>(simulation_, own);
   fetched_.resize(ranks_.rank() == 0 ? input.objects.size() : 0);
 }
 
