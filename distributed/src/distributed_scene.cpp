@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/stop_signal.hpp"
+#include "core/timer.hpp"
 #include "distributed_implementation.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/topology.hpp"
@@ -124,6 +126,7 @@ void DistributedScene::Implementation::count_messages() {
 }
 
 const DetectResult& DistributedScene::Implementation::detect(const DetectRequest& request) {
+  Timer total;
   ranks.together([&] {
     question_ = supple::question_of(request, options.scene);
     const auto refuse = [](const char* what) { fail(std::string("DistributedScene::detect: ") + what); };
@@ -139,10 +142,17 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   });
   prepare(question_.has_penetration());
   result_ = {};
+  result_.step = step_;
+  bool is_done = false;
   ranks.together([&] {
-    detection_.run(question_, request.max_contacts, {}, result_.stats);
-    send_results();
+    is_done = detection_.run(question_, request.max_contacts, stop_of(request), result_.stats);
   });
+  if (ranks.any(!is_done)) {
+    result_.stopped = true;
+    end_step();
+    return result_;
+  }
+  ranks.together([&] { send_results(); });
   send_lists();
   ranks.together([&] { lists_.list(result_); });
   for (std::size_t list = 0; list < pair_lists; ++list) events_[list].update(lists_.pairs[list]);
@@ -150,12 +160,13 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   result_.contact_events = events_[1].events();
   result_.proximity_events = events_[2].events();
   result_.penetration_events = events_[3].events();
-  result_.step = step_++;
-  gather_step_stats();
   end_step();
   list_untested();
   result_.untested = untested_;
   count_messages();
+  result_.stats.total_seconds = total.lap();
+  gather_step_stats();
+  ++step_;
   return result_;
 }
 

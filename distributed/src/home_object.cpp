@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/sort_once.hpp"
@@ -90,25 +91,28 @@ HomeObject::HomeObject(ObjectId object_id, const PositionsView& positions, const
   const ObjectOctree octree(positions, elements, {}, BoundingVolume::aabb, SphereFit{});
   const std::span<const std::uint32_t> order = octree.triangle_ids();
   const std::size_t count = (order.size() + cluster_triangles - 1) / cluster_triangles;
+  constexpr std::uint32_t unplaced = ~std::uint32_t{0};
+  std::vector<std::uint32_t> place_of(vertex_count_, unplaced);  // in the cluster
   for (std::size_t c = 0; c < count; ++c) {
     Cluster& cluster = clusters.emplace_back();
     const std::size_t first = order.size() * c / count, end = order.size() * (c + 1) / count;
     std::vector<std::uint32_t> ids(order.begin() + static_cast<std::ptrdiff_t>(first),
                                    order.begin() + static_cast<std::ptrdiff_t>(end));
     std::sort(ids.begin(), ids.end());
-    for (const std::uint32_t e : ids)
-      cluster.vertices.insert(cluster.vertices.end(), elements[e].begin(), elements[e].end());
-    sort_once(cluster.vertices);
+    for (const std::uint32_t e : ids) {
+      for (const std::uint32_t v : elements[e]) {
+        if (std::exchange(place_of[v], 0) != 0) cluster.vertices.push_back(v);
+      }
+    }
+    std::sort(cluster.vertices.begin(), cluster.vertices.end());
+    for (std::uint32_t i = 0; i < cluster.vertices.size(); ++i) place_of[cluster.vertices[i]] = i;
     for (const std::uint32_t e : ids) {
       Triangle corners = elements[e];
-      for (std::uint32_t& corner : corners) {
-        corner = static_cast<std::uint32_t>(
-            std::lower_bound(cluster.vertices.begin(), cluster.vertices.end(), corner) -
-            cluster.vertices.begin());
-      }
+      for (std::uint32_t& corner : corners) corner = place_of[corner];
       cluster.elements.push_back(corners);
       if (e < face_count) cluster.faces.push_back(face_ids.empty() ? e : face_ids[e]);
     }
+    for (const std::uint32_t v : cluster.vertices) place_of[v] = unplaced;
     cluster.work = static_cast<double>(cluster.elements.size());
   }
   // They are in the clusters now.

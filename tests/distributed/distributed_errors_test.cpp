@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <stop_token>
 #include <string>
 
 #include "supple/distributed.hpp"
@@ -202,6 +203,26 @@ TEST(DistributedErrors, OfDamagedCheckpoints) {
     errors += error_of([&] { restarted.load(path); }).empty() ? 0 : 1;
   }
   EXPECT_GT(errors, 50);
+}
+
+TEST(DistributedErrors, AStopOnOneRankStopsAll) {
+  DistributedScene scene(MPI_COMM_WORLD, {.scene = {.threads = 1}});
+  const TriangleMesh ball = make_icosphere(4);
+  const auto rank = static_cast<std::uint32_t>(scene.rank());
+  scene.add(ObjectId{2 * rank}, ball.positions, ball.triangles);
+  scene.add(ObjectId{2 * rank + 1}, ball.positions, ball.triangles);
+  EXPECT_EQ(scene.detect().step, 0u);
+  std::stop_source stop;
+  if (scene.rank() == scene.rank_count() - 1) stop.request_stop();
+  const DetectResult& stopped = scene.detect({.stop = stop.get_token()});
+  EXPECT_TRUE(stopped.stopped);
+  EXPECT_TRUE(stopped.contacts.empty());
+  const DetectResult& found = scene.detect();
+  EXPECT_FALSE(found.stopped);
+  EXPECT_EQ(found.step, 1u);
+  EXPECT_EQ(found.contacts.empty(), scene.rank() != 0);
+  EXPECT_TRUE(found.volume_events.begin.empty());  // the pairs of step 0 go on
+  EXPECT_GT(found.stats.total_seconds, 0);
 }
 
 TEST(DistributedErrors, AnEmptySceneHasNoContacts) {

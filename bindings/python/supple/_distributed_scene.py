@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._contracts import contract
-from ._core import Error
+from ._core import Error, Stop
 from ._generated import ResultPlacement
 from ._meshes import arrays_of_object
 from ._object import Handle
@@ -162,10 +162,11 @@ must not call the scene. What it raises is an `Error` on all ranks.""",
     @contract(
         "DistributedScene::detect",
         """The options are those of `Scene.detect`. The lists are copies, which stay valid. Tables have no
-column `vertices`, because a rank does not have the triangles of others.""",
+column `vertices`, because a rank does not have the triangles of others. `stop` on one rank, or Ctrl-C, stops
+the call on all of them.""",
     )
-    def detect(self, **request: Any) -> Result:
-        return Result(self._core.detect(request), None)
+    def detect(self, *, stop: Stop | None = None, **request: Any) -> Result:
+        return Result(self._core.detect(request, stop), None)
 
     @contract("DistributedScene::earliest_impact")
     def earliest_impact(self) -> Record | None:

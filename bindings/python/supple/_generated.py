@@ -346,7 +346,7 @@ CONTRACTS = {
     'DistributedScene::collision_free_step':
         'As `Scene.collision_free_step`; the same on all ranks.',
     'DistributedScene::detect':
-        'Finds the contacts as `Scene.detect` does. The result is valid until the next call. Counts of its statistics are sums over all ranks, its times those of the slowest rank. Requests with `max_contacts`, manifolds or first contacts of elements are errors.',
+        'Finds the contacts as `Scene.detect` does. The result is valid until the next call. Counts of its statistics are sums over all ranks, its times those of the slowest rank. A stop on one rank stops the call on all of them. Requests with `max_contacts`, manifolds or first contacts of elements are errors.',
     'DistributedScene::distances':
         'As `Scene.distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair.',
     'DistributedScene::earliest_impact':
@@ -370,11 +370,11 @@ CONTRACTS = {
     'DistributedScene::save':
         'Collective: writes the objects of all ranks, with their options and positions, and what the events of the next step need, to one file. The file appears when it is whole: an older one stays until then. The options of the scene and the pair filter are not in it. Throws `Error` when the file cannot be written.',
     'DistributedScene::set_group':
-        'See `DistributedScene::set_group` in supple/distributed.hpp.',
+        'As `Scene.set_group`.',
     'DistributedScene::set_margin':
-        'See `DistributedScene::set_margin` in supple/distributed.hpp.',
+        'As `Scene.set_margin`.',
     'DistributedScene::set_min_separation':
-        'See `DistributedScene::set_min_separation` in supple/distributed.hpp.',
+        'As `Scene.set_min_separation`.',
     'DistributedScene::set_motion':
         'As `Scene.set_motion`.',
     'DistributedScene::set_pair_filter':
@@ -382,9 +382,9 @@ CONTRACTS = {
     'DistributedScene::set_positions':
         'The positions of the vertices that this rank added, in its order. Copies them, O(n).',
     'DistributedScene::set_self_collision':
-        'See `DistributedScene::set_self_collision` in supple/distributed.hpp.',
+        'As `Scene.set_self_collision`.',
     'DistributedScene::set_static':
-        'See `DistributedScene::set_static` in supple/distributed.hpp.',
+        'As `Scene.set_static`.',
     'DistributedScene::set_vertex_groups':
         'Of the vertices that this rank added, in its order; parts give the vertices that they share the same numbers.',
     'DistributedScene::stats':

@@ -272,7 +272,6 @@ def errors_are_those_of_all_ranks():
     expect_on_all(
         "manifolds are made from penetration", lambda: scene.detect(contacts="intersection", manifolds=True)
     )
-    expect_on_all("there is no option 'stop'", lambda: scene.detect(stop=None))
     expect_on_all("max_distance", lambda: scene.distances(-1.0))
     expect_on_all("object 1000", lambda: scene.closest([[0, 0, 0]], object=1000))
     for keywords, message in (
@@ -340,6 +339,18 @@ def other_communicators():
     assert len(result.contacts) > 10 and result.contacts["normal"].shape == (len(result.contacts), 3)
 
 
+def a_stop_on_one_rank_stops_all():
+    scene = supple.DistributedScene(WORLD, threads=1)
+    mesh = supple.make_icosphere(3)
+    scene.add(mesh.positions, mesh.triangles, id=WORLD.rank)
+    stop = supple.Stop()
+    if WORLD.rank == WORLD.size - 1:
+        stop.request()
+    assert scene.detect(stop=stop).stopped
+    result = scene.detect()
+    assert not result.stopped and result.step == 0
+
+
 def calls_release_the_gil():
     """While one thread of rank 0 waits in `detect` for the other ranks, the main thread lets them go."""
     scene = supple.DistributedScene(WORLD, threads=1)
@@ -368,6 +379,7 @@ if __name__ == "__main__":
         errors_are_those_of_all_ranks,
         wrong_input,
         other_communicators,
+        a_stop_on_one_rank_stops_all,
         calls_release_the_gil,
     ):
         test()

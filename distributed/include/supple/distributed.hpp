@@ -108,12 +108,18 @@ class DistributedScene {
   /// As `Scene::set_motion`.
   void set_motion(ObjectId id, PositionsView from, PositionsView to);
 
-  // As the functions of `Scene`. Each rank that has a part of the object makes the call. The next collective
-  // call sends the object's topology again and rebuilds its octrees.
+  // Each rank that has a part of the object makes these calls. The next collective call sends the object's
+  // topology again and rebuilds its octrees.
+
+  /// As `Scene::set_static`.
   void set_static(ObjectId id, bool is_static);
+  /// As `Scene::set_group`.
   void set_group(ObjectId id, std::uint32_t group, std::uint32_t mask);
+  /// As `Scene::set_margin`.
   void set_margin(ObjectId id, double margin);
+  /// As `Scene::set_min_separation`.
   void set_min_separation(ObjectId id, double separation);
+  /// As `Scene::set_self_collision`.
   void set_self_collision(ObjectId id, bool enabled);
   /// Of the vertices that this rank added, in its order; parts give the vertices that they share the same
   /// numbers.
@@ -124,8 +130,8 @@ class DistributedScene {
   void set_pair_filter(PairFilter filter);
 
   /// Finds the contacts as `Scene::detect` does. The result is valid until the next call. Counts of its
-  /// statistics are sums over all ranks, its times those of the slowest rank. Requests with `max_contacts`,
-  /// manifolds or first contacts of elements are errors.
+  /// statistics are sums over all ranks, its times those of the slowest rank. A stop on one rank stops the
+  /// call on all of them. Requests with `max_contacts`, manifolds or first contacts of elements are errors.
   const DetectResult& detect(const DetectRequest& request = {});
   /// As `Scene::earliest_impact`; the same on all ranks.
   std::optional<ContinuousContact> earliest_impact();

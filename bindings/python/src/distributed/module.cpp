@@ -33,11 +33,14 @@ class DistributedCore {
   DistributedScene& scene() { return scene_; }
   CallGuard& guard() { return guard_; }
   void forget_shared(ObjectId) {}
-  std::unique_ptr<Result> detect(const nb::dict& keywords) {
-    const DetectRequest request = request_of(keywords, options_.scene, "detect");
+  std::unique_ptr<Result> detect(const nb::dict& keywords, Stop* stop) {
+    DetectRequest request = request_of(keywords, options_.scene, "detect");
     const Alone alone(guard_);
-    const WithoutGil without_gil;
-    return copy_of(scene_.detect(request));
+    const auto detected = [&](std::stop_token token) {
+      request.stop = std::move(token);
+      return copy_of(scene_.detect(request));
+    };
+    return run_stoppable(stop, detected, false);  // other ranks would not repeat the call
   }
 
  private:
@@ -98,7 +101,7 @@ NB_MODULE(_distributed, module) {
     const WithoutGil without_gil;
     core.scene().add_part(id, xyz, faces, {span_of(vertex_numbers), span_of(triangle_numbers)}, options);
   });
-  scene.def("detect", &DistributedCore::detect);
+  scene.def("detect", &DistributedCore::detect, nb::arg(), nb::arg().none());
   scene.def("distances", [](DistributedCore& core, double max_distance) {
     const Alone alone(core.guard());
     return to_table([&] {

@@ -1,4 +1,6 @@
-// Closest points. The rank whose region contains a point bounds its distance by the boxes of clusters there.
+// Queries. Distances of objects: one rank gets both objects of a pair, whole.
+//
+// Closest points: the rank whose region contains a point bounds its distance by the boxes of clusters there.
 // The ranks whose regions the ball of this radius meets find the nearest triangle of the clusters in the ball,
 // each cluster on the rank whose region contains the lower corner of what its box and that of the ball share.
 // The rank of the point takes the nearest of all.
@@ -222,6 +224,24 @@ ClosestPoint DistributedScene::Implementation::nearest_of(std::span<const Candid
   std::optional<ClosestPoint> found;
   Queries(corners).closest({&point, 1}, {&found, 1}, {});
   return nearest[found ? found->object.index : 0]->closest;
+}
+
+std::vector<ProximityPair> DistributedScene::Implementation::distances(double max_distance) {
+  ranks.together([&] { check_distance(max_distance, "distances"); });
+  // Rounded up by more than the sums of boxes can lose.
+  const double growth = 0.5 * max_distance * (1 + 0x1p-19) + std::numeric_limits<float>::min();
+  question_ = {};
+  prepare(true, std::min(growth, double{std::numeric_limits<float>::max()}));
+  ranks.together([&] {
+    clear_lists();
+    for (const ProximityPair& pair : Queries(world()).distances(max_distance, {})) {
+      const ProximityPair found = named(pair);
+      lists_of(found.object_a).proximity_pairs.push_back(found);
+    }
+  });
+  send_lists();
+  end_step();
+  return lists_.proximity_pairs;
 }
 
 }  // namespace supple
