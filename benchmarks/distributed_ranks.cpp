@@ -5,9 +5,13 @@
 //
 // WORKLOAD is balls:N:FREQUENCY, N deforming balls of 20 FREQUENCY^2 triangles in a cube, dealt to the ranks
 // in turn; or sheet:SIDE, a waving sheet of 2 SIDE^2 triangles that is tested against itself and 16 balls,
-// cut into one strip a rank. Prints a line of JSON.
+// cut into one strip for each rank; or tiles:SIDE, such a sheet cut into one tile for each rank, with one
+// small ball for about 31,000 of its triangles, which is on the rank of the tile at its center, for ranks
+// that are a power of two. Prints a line of JSON. Values `…_of_rank` are those of the rank that has most,
+// other counts are sums over all ranks. Processor time is that outside of MPI.
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +22,9 @@
 #include <string>
 #include <vector>
 
+#include "mpi_calls.hpp"
+#include "regions.hpp"
+#include "supple/broad_phase.hpp"
 #include "supple/distributed.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
@@ -46,19 +53,33 @@ Owned ball(std::uint32_t i, const TriangleMesh& mesh, Vec3d place) {
   return object;
 }
 
-/// The rows [begin, end) of a sheet of side x side squares.
-Owned strip(std::uint32_t side, std::uint32_t begin, std::uint32_t end) {
+struct Range {
+  std::uint32_t begin, end;
+};
+
+/// The part of 0 … count - 1 that is number i of n.
+Range range_of(std::uint32_t count, int i, int n) {
+  const auto bound = [&](int at) {
+    return static_cast<std::uint32_t>(std::uint64_t{count} * static_cast<std::uint64_t>(at) /
+                                      static_cast<std::uint64_t>(n));
+  };
+  return {bound(i), bound(i + 1)};
+}
+
+/// A part of a sheet of side x side squares.
+Owned part_of_sheet(std::uint32_t side, Range rows, Range columns) {
   Owned part;
   part.is_sheet = true;
-  for (std::uint32_t row = begin; row <= end; ++row) {
-    for (std::uint32_t column = 0; column <= side; ++column) {
+  for (std::uint32_t row = rows.begin; row <= rows.end; ++row) {
+    for (std::uint32_t column = columns.begin; column <= columns.end; ++column) {
       part.vertex_ids.push_back(row * (side + 1) + column);
       part.rest.push_back({double(column) / side, 0, double(row) / side});
     }
   }
-  for (std::uint32_t row = begin; row < end; ++row) {
-    for (std::uint32_t column = 0; column < side; ++column) {
-      const std::uint32_t v = (row - begin) * (side + 1) + column, w = v + side + 1;
+  const std::uint32_t stride = columns.end - columns.begin + 1;
+  for (std::uint32_t row = rows.begin; row < rows.end; ++row) {
+    for (std::uint32_t column = columns.begin; column < columns.end; ++column) {
+      const std::uint32_t v = (row - rows.begin) * stride + column - columns.begin, w = v + stride;
       part.triangles.push_back({v, w, v + 1});
       part.triangles.push_back({v + 1, w, w + 1});
       part.triangle_ids.push_back(2 * (row * side + column));
@@ -73,21 +94,39 @@ std::vector<Owned> objects_of(const std::string& workload, int rank, int ranks) 
   std::vector<Owned> owned;
   std::uint32_t count = 16, frequency = 30, side = 0;
   if (std::sscanf(workload.c_str(), "balls:%u:%u", &count, &frequency) != 2 &&
-      std::sscanf(workload.c_str(), "sheet:%u", &side) != 1) {
-    std::fprintf(stderr, "distributed_ranks: the workload is balls:N:FREQUENCY or sheet:SIDE\n");
+      std::sscanf(workload.c_str(), "sheet:%u", &side) != 1 &&
+      std::sscanf(workload.c_str(), "tiles:%u", &side) != 1) {
+    std::fprintf(stderr, "distributed_ranks: the workload is balls:N:FREQUENCY, sheet:SIDE or tiles:SIDE\n");
     std::exit(2);
+  }
+  const bool are_tiles = workload[0] == 't';
+  auto edge = static_cast<std::uint32_t>(std::ceil(std::cbrt(count)));
+  int columns = 1, column = 0, rows = are_tiles ? 1 : ranks, row = are_tiles ? 0 : rank;
+  for (int half = ranks / 2; are_tiles && half > 0; half /= 2) {  // numbered as by recursive bisection
+    const bool is_x = columns <= rows;
+    (is_x ? column : row) = 2 * (is_x ? column : row) + rank / half % 2;
+    (is_x ? columns : rows) *= 2;
+  }
+  if (are_tiles) {
+    edge = std::max(1u, side / 125);
+    count = edge * edge;
+    frequency = 8;
+  } else if (side != 0) {
+    edge = 4;
   }
   TriangleMesh mesh = make_icosphere(frequency);
   if (side != 0) {
-    for (Vec3d& p : mesh.positions) p = p * 0.1;
-    owned.push_back(strip(side, side * static_cast<std::uint32_t>(rank) / static_cast<std::uint32_t>(ranks),
-                          side * static_cast<std::uint32_t>(rank + 1) / static_cast<std::uint32_t>(ranks)));
+    for (Vec3d& p : mesh.positions) p = p * (0.4 / edge);
+    owned.push_back(part_of_sheet(side, range_of(side, row, rows), range_of(side, column, columns)));
   }
-  const auto edge = static_cast<std::uint32_t>(std::ceil(std::cbrt(count)));
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (static_cast<int>(i) % ranks != rank) continue;
+    const double x = (i % edge + 0.5) / edge, z = (i / edge + 0.5) / edge;  // on the sheet
+    const bool is_here = are_tiles
+                             ? static_cast<int>(x * columns) == column && static_cast<int>(z * rows) == row
+                             : static_cast<int>(i) % ranks == rank;
+    if (!is_here) continue;
     const Vec3d place =
-        side != 0 ? Vec3d{0.2 + 0.2 * (i % 4), 0, 0.2 + 0.2 * (i / 4)}
+        side != 0 ? Vec3d{x, 0, z}
                   : 0.85 * Vec3d{double(i % edge), double(i / edge % edge), double(i / edge / edge)};
     owned.push_back(ball(1 + i, mesh, place));
   }
@@ -103,6 +142,41 @@ void move(Owned& object, int step) {
                         : object.place + Vec3d{p.x * (1 + 0.05 * std::sin(t + object.number)), p.y,
                                                p.z * (1 + 0.05 * std::cos(t + object.number))};
   }
+}
+
+/// How many positions any method must send to other ranks when each rank has a region of space, all with the
+/// same number of triangles by recursive coordinate bisection, and gets all triangles whose boxes meet it:
+/// `from_here` when they are where this rank has them, `surface` when each is already where it is needed
+/// once.
+struct PositionsToSend {
+  double from_here = 0, surface = 0;
+};
+
+PositionsToSend positions_to_send(const std::vector<Owned>& owned, int rank) {
+  const Communicator communicator(MPI_COMM_WORLD);
+  Regions regions(communicator);
+  std::vector<WeightedPoint> centers;
+  for (const Owned& object : owned) {
+    for (const auto& [a, b, c] : object.triangles)
+      centers.push_back({(object.now[a] + object.now[b] + object.now[c]) * (1.0 / 3), 1});
+  }
+  regions.divide(centers);
+  PositionsToSend found;
+  for (const Owned& object : owned) {
+    std::vector<std::pair<std::uint32_t, int>> needed;  // a vertex and a rank
+    for (const Triangle& corners : object.triangles) {
+      const Aabb box =
+          enclosing_box(std::array{object.now[corners[0]], object.now[corners[1]], object.now[corners[2]]});
+      for (const int other : regions.ranks_of(box)) {
+        for (const std::uint32_t v : corners) needed.push_back({v, other});
+      }
+    }
+    std::sort(needed.begin(), needed.end());
+    needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
+    found.surface += static_cast<double>(needed.size() - object.now.size());
+    for (const auto& [v, other] : needed) found.from_here += other != rank ? 1 : 0;
+  }
+  return found;
 }
 
 double peak_megabytes() {
@@ -151,16 +225,20 @@ int run(int argc, char** argv) {
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, &triangles, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-  std::vector<double> seconds, bytes, messages;
+  std::vector<double> seconds, bytes, messages, cpu;
   double contacts = 0;
+  MpiCalls calls;  // of the last step
   for (int step = 0; step < steps + 2; ++step) {
     for (Owned& object : owned) move(object, step);
     MPI_Barrier(MPI_COMM_WORLD);
-    const double begin = now();
+    const double begin = now(), cpu_begin = cpu_seconds();
+    const MpiCalls before = mpi_calls;
     for (const Owned& object : owned)
       is_plain ? plain->set_positions(object.id, object.now)
                : distributed->set_positions(object.id, object.now);
     const DetectResult& result = is_plain ? plain->detect() : distributed->detect();
+    cpu.push_back(cpu_seconds() - cpu_begin - (mpi_calls.cpu_seconds - before.cpu_seconds));
+    calls = {mpi_calls.collectives - before.collectives, mpi_calls.sends - before.sends};
     MPI_Barrier(MPI_COMM_WORLD);
     contacts = static_cast<double>(result.contacts.size());
     if (step < 2) continue;  // they send the topology and build octrees
@@ -175,18 +253,35 @@ int run(int argc, char** argv) {
                      values.end());
     return values[values.size() / 2];
   };
-  double most[] = {median(bytes), median(messages), peak_megabytes(),
-                   is_plain ? 0 : double(distributed->stats().triangles)};
-  double sums[] = {contacts, most[0], most[3]};
-  MPI_Allreduce(MPI_IN_PLACE, most, 4, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
-  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  const double peak = peak_megabytes();
+  cpu.erase(cpu.begin(), cpu.begin() + std::min<std::ptrdiff_t>(2, std::ssize(cpu)));
+  const DistributedStats work = is_plain ? DistributedStats{} : distributed->stats();
+  distributed.reset();
+  const PositionsToSend least = is_plain ? PositionsToSend{} : positions_to_send(owned, rank);
+  double most[] = {median(bytes), median(messages),       peak,
+                   median(cpu),   double(work.triangles), double(calls.sends)};
+  double sums[] = {contacts,
+                   most[0],
+                   most[1],
+                   most[4],
+                   most[3],
+                   double(work.clusters),
+                   double(work.cluster_pairs),
+                   least.from_here,
+                   least.surface};
+  MPI_Allreduce(MPI_IN_PLACE, most, std::size(most), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, sums, std::size(sums), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
   if (rank == 0) {
     std::printf(
         "{\"workload\": \"%s\", \"ranks\": %d, \"threads\": %d, \"triangles\": %.0f, \"contacts\": %.0f, "
-        "\"step_seconds\": %.6f, \"bytes_of_rank\": %.0f, \"messages_of_rank\": %.0f, \"bytes\": %.0f, "
-        "\"needed_triangles\": %.0f, \"imbalance\": %.3f, \"megabytes_of_rank\": %.1f}\n",
+        "\"step_seconds\": %.6f, \"bytes_of_rank\": %.0f, \"bytes\": %.0f, \"messages_of_rank\": %.0f, "
+        "\"messages\": %.0f, \"needed_triangles\": %.0f, \"imbalance\": %.3f, \"megabytes_of_rank\": %.1f, "
+        "\"cpu_seconds_of_rank\": %.6f, \"cpu_seconds\": %.6f, \"needed_triangles_of_rank\": %.0f, "
+        "\"sends_of_rank\": %.0f, \"collectives\": %llu, \"clusters\": %.0f, \"cluster_pairs\": %.0f, "
+        "\"least_positions\": %.0f, \"surface_positions\": %.0f}\n",
         argv[1], is_plain ? 0 : ranks, is_plain ? std::atoi(argv[4]) : 1, triangles, sums[0], median(seconds),
-        most[0], most[1], sums[1], sums[2], is_plain ? 1.0 : distributed->stats().imbalance, most[2]);
+        most[0], sums[1], most[1], sums[2], sums[3], work.imbalance, most[2], most[3], sums[4], most[4],
+        most[5], static_cast<unsigned long long>(calls.collectives), sums[5], sums[6], sums[7], sums[8]);
   }
   return 0;
 }
