@@ -46,8 +46,8 @@ class Writer {
   std::vector<std::byte>& bytes_;
 };
 
-/// Takes values from a message in the order of `Writer`. Throws `Error` when it ends too early, as a file that
-/// was damaged.
+/// Takes values from a message in the order of `Writer`. Throws `Error` when it ends too early, as a file
+/// that was damaged.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}

@@ -1,5 +1,5 @@
-// Checkpoints: one file with a head, a table of objects and parts, their data, and the pairs of the last step.
-// Each rank writes and reads its own ranges of it.
+// Checkpoints: one file with a head, a table of objects and parts, their data, and the pairs of the last
+// step. Each rank writes and reads its own ranges of it.
 
 #include <algorithm>
 #include <array>
@@ -74,8 +74,9 @@ class SharedFile {
       check(transfer(static_cast<MPI_Offset>(at + first), first, count, status), "cannot be read or written");
       int done = 0;
       MPI_Get_count(&status, MPI_BYTE, &done);
-      if (done != count) fail(path_ + ": only " + std::to_string(done) + " of " + std::to_string(count) +
-                              " bytes were read or written; is the disk full?");
+      if (done != count)
+        fail(path_ + ": only " + std::to_string(done) + " of " + std::to_string(count) +
+             " bytes were read or written; is the disk full?");
     }
   }
   void check(int code, const char* what) const {
@@ -152,7 +153,8 @@ void DistributedScene::Implementation::load(const std::string& path) {
       is_unusable("is a checkpoint of version " + std::to_string(head.version) + "; this program reads " +
                   std::to_string(Head().version));
     const auto cut_off = [&] { is_unusable("is cut off or damaged; take an older checkpoint"); };
-    if (head.objects > size / sizeof(Row) || head.events > size || head.events % sizeof(Event) != 0) cut_off();
+    if (head.objects > size / sizeof(Row) || head.events > size || head.events % sizeof(Event) != 0)
+      cut_off();
     std::vector<Row> table(head.objects);
     file.read(sizeof head, std::as_writable_bytes(std::span(table)));
     std::uint64_t total = 0;

@@ -151,8 +151,8 @@ class DistributedScene::Implementation {
   // What a step computes.
   Question question_;
   Region region_;
-  bool by_objects_ = false;  // whole objects are tested
-  double growth_ = 0;        // of boxes, for a search of distances
+  bool by_objects_ = false;              // whole objects are tested
+  double growth_ = 0;                    // of boxes, for a search of distances
   std::map<ObjectPair, bool> filtered_;  // what the filter said
   std::vector<Unit> objects_, clusters_;
   std::map<ObjectId, std::vector<int>> homes_of_;  // of `objects_`

@@ -144,9 +144,8 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   result_ = {};
   result_.step = step_;
   bool is_done = false;
-  ranks.together([&] {
-    is_done = detection_.run(question_, request.max_contacts, stop_of(request), result_.stats);
-  });
+  ranks.together(
+      [&] { is_done = detection_.run(question_, request.max_contacts, stop_of(request), result_.stats); });
   if (ranks.any(!is_done)) {
     result_.stopped = true;
     end_step();

@@ -98,7 +98,7 @@ class HomeObject {
   Aabb box_of(const Cluster& cluster, const SearchedShapes& shapes) const;
 
   bool is_part_;
-  std::vector<std::uint32_t> vertex_ids_;  // of a part
+  std::vector<std::uint32_t> vertex_ids_;      // of a part
   std::vector<std::uint32_t> groups_, masks_;  // of its vertices; empty without groups
   std::size_t vertex_count_;
   Coordinates start_, end_;  // `start_` is empty at rest

@@ -72,7 +72,8 @@ void HomeObject::write(Writer& to) const {
   std::vector<SavedVertex> vertices;
   for (std::uint32_t v = 0; v < vertex_count_; ++v) {
     const Vec3d end = end_[v], start = has_motion() ? start_[v] : end;
-    SavedVertex vertex{.number = user_vertex(v), .start = {start.x, start.y, start.z}, .end = {end.x, end.y, end.z}};
+    SavedVertex vertex{
+        .number = user_vertex(v), .start = {start.x, start.y, start.z}, .end = {end.x, end.y, end.z}};
     if (has_vertex_groups()) {
       vertex.is_grouped = 1;
       vertex.group = groups_[v];
@@ -115,9 +116,8 @@ HomeObject HomeObject::read(ObjectId id, std::span<const std::span<const std::by
   }
   std::sort(faces.begin(), faces.end());
   std::sort(vertices.begin(), vertices.end());
-  const auto end = std::unique(vertices.begin(), vertices.end(), [](const auto& p, const auto& q) {
-    return p.number == q.number;
-  });
+  const auto end = std::unique(vertices.begin(), vertices.end(),
+                               [](const auto& p, const auto& q) { return p.number == q.number; });
   vertices.erase(end, vertices.end());
   const auto local = [&](std::uint32_t number) {
     const auto found = std::lower_bound(vertices.begin(), vertices.end(), SavedVertex{number});

@@ -1,9 +1,9 @@
 // Queries. Distances of objects: one rank gets both objects of a pair, whole.
 //
 // Closest points: the rank whose region contains a point bounds its distance by the boxes of clusters there.
-// The ranks whose regions the ball of this radius meets find the nearest triangle of the clusters in the ball,
-// each cluster on the rank whose region contains the lower corner of what its box and that of the ball share.
-// The rank of the point takes the nearest of all.
+// The ranks whose regions the ball of this radius meets find the nearest triangle of the clusters in the
+// ball, each cluster on the rank whose region contains the lower corner of what its box and that of the ball
+// share. The rank of the point takes the nearest of all.
 
 #include <algorithm>
 #include <array>
@@ -199,8 +199,8 @@ void DistributedScene::Implementation::closest(std::span<const Vec3d> points,
               [&](const Candidate& p, const Candidate& q) { return key(p) < key(q); });
     std::fill(results.begin(), results.end(), std::nullopt);
     for (auto first = candidates.begin(); first != candidates.end();) {
-      const auto end = std::find_if(first, candidates.end(),
-                                    [&](const Candidate& c) { return c.index != first->index; });
+      const auto end =
+          std::find_if(first, candidates.end(), [&](const Candidate& c) { return c.index != first->index; });
       results[first->index] = nearest_of({first, end}, points[first->index]);
       first = end;
     }

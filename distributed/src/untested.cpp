@@ -1,5 +1,6 @@
-// The kinds of contacts that had nothing to test. Most steps only need to know that two objects may touch, which
-// the groups of all objects tell. Otherwise the first home of each object gets it whole, and rank 0 decides.
+// The kinds of contacts that had nothing to test. Most steps only need to know that two objects may touch,
+// which the groups of all objects tell. Otherwise the first home of each object gets it whole, and rank 0
+// decides.
 
 #include "answers/untested.hpp"
 

@@ -149,8 +149,8 @@ void write_file(const std::string& path, const std::string& bytes) {
 }
 
 TEST(DistributedErrors, OfCheckpoints) {
-  const std::string path =
-      testing::TempDir() + "supple_bad_checkpoint_" + std::to_string(DistributedScene(MPI_COMM_WORLD).rank_count());
+  const std::string path = testing::TempDir() + "supple_bad_checkpoint_" +
+                           std::to_string(DistributedScene(MPI_COMM_WORLD).rank_count());
   const auto error_of_load = [&](const std::string& file) {
     return error_of([&] { DistributedScene(MPI_COMM_WORLD).load(file); });
   };

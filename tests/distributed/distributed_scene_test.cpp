@@ -346,7 +346,8 @@ TEST(DistributedScene, ACheckpointGoesOnWithOtherRanks) {
   for (std::uint64_t seed = 151; seed < 152 + life_count(); ++seed) {
     Lives lives(seed, small_clusters());
     for (int i = 0; i < 6; ++i) lives.add_object(false);
-    const ContactKinds kinds = ContactKinds::intersection | ContactKinds::continuous | ContactKinds::proximity;
+    const ContactKinds kinds =
+        ContactKinds::intersection | ContactKinds::continuous | ContactKinds::proximity;
     for (int step = 0; step < 6; ++step) {
       lives.move_objects(false);
       lives.change_settings(true);

@@ -24,7 +24,8 @@ void before_call() {
   static std::uint64_t calls = 0;
   ++calls;
   if (delay != nullptr) {
-    const std::uint64_t number = calls * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(rank_of_process()) * 77;
+    const std::uint64_t number =
+        calls * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(rank_of_process()) * 77;
     if ((number >> 33) % static_cast<std::uint64_t>(std::atoi(delay)) == 0)
       usleep(static_cast<useconds_t>((number >> 40) % 5000));
   }
@@ -55,7 +56,8 @@ int MPI_Rsend(const void* data, int count, MPI_Datatype type, int to, int tag, M
   before_call();
   return PMPI_Rsend(data, count, type, to, tag, ranks);
 }
-int MPI_Irecv(void* data, int count, MPI_Datatype type, int from, int tag, MPI_Comm ranks, MPI_Request* request) {
+int MPI_Irecv(void* data, int count, MPI_Datatype type, int from, int tag, MPI_Comm ranks,
+              MPI_Request* request) {
   before_call();
   return PMPI_Irecv(data, count, type, from, tag, ranks, request);
 }

@@ -197,8 +197,7 @@ std::optional<NothingToTest> nothing_to_test(ContactKinds kind, std::span<const 
   for (const TestableObject* const object : candidates) is_pairable = pairable.add(*object) || is_pairable;
   if (!is_pairable || !any_pair(candidates, [](const auto&, const auto&) { return true; }))
     return NothingToTest::groups;
-  if (filter &&
-      !any_pair(candidates, [&](const auto& a, const auto& b) { return filter(a.id, b.id); }))
+  if (filter && !any_pair(candidates, [&](const auto& a, const auto& b) { return filter(a.id, b.id); }))
     return NothingToTest::filter;
   return std::nullopt;
 }

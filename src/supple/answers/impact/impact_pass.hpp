@@ -77,8 +77,8 @@ struct ImpactWorker : PassWorker<ContinuousContact> {
   }
 };
 
-/// What the searches of all processes of one scene found first, from what the search of this one found; a step
-/// without a limit is nothing.
+/// What the searches of all processes of one scene found first, from what the search of this one found; a
+/// step without a limit is nothing.
 using FirstOfAll = std::function<SafeStep(const SafeStep&)>;
 
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
