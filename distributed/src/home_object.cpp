@@ -183,9 +183,7 @@ Aabb HomeObject::box_of(const Cluster& cluster, const SearchedShapes& shapes) co
   };
   Aabb resting, moving;
   if (shapes.resting || (!shapes.moving && !shapes.near)) {
-    const bool all_count = cluster.faces.size() == cluster.elements.size() &&
-                           std::all_of(cluster.vertices.begin(), cluster.vertices.end(),
-                                       [&](std::uint32_t v) { return is_finite(end_[v]); });
+    const bool all_count = cluster.faces.size() == cluster.elements.size() && cluster.is_finite;
     std::vector<std::uint32_t> counted;  // ascending
     for (std::size_t f = 0; f < cluster.faces.size() && !all_count; ++f) {
       const auto [p, q, r] = cluster.elements[f];
@@ -214,7 +212,12 @@ Aabb HomeObject::box_of(const Cluster& cluster, const SearchedShapes& shapes) co
 
 void HomeObject::update_boxes(const SearchedShapes& shapes, const Parallel& parallel) {
   parallel.for_ranges(clusters.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t c = begin; c < end; ++c) clusters[c].box = box_of(clusters[c], shapes);
+    for (std::size_t c = begin; c < end; ++c) {
+      Cluster& cluster = clusters[c];
+      cluster.is_finite = std::all_of(cluster.vertices.begin(), cluster.vertices.end(),
+                                      [&](std::uint32_t v) { return is_finite_at(shapes, v); });
+      cluster.box = box_of(cluster, shapes);
+    }
   });
   box = {};
   for (const Cluster& cluster : clusters) extend(box, cluster.box);
@@ -223,7 +226,8 @@ void HomeObject::update_boxes(const SearchedShapes& shapes, const Parallel& para
 void HomeObject::list_non_finite(const SearchedShapes& shapes, std::vector<NonFiniteVertex>& vertices) const {
   std::vector<std::uint32_t> found;
   for (const Cluster& cluster : clusters) {
-    for (const std::uint32_t v : cluster.vertices) {
+    for (std::size_t i = 0; i < cluster.vertices.size() && !cluster.is_finite; ++i) {
+      const std::uint32_t v = cluster.vertices[i];
       if (!is_finite_at(shapes, v)) found.push_back(v);
     }
   }

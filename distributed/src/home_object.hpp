@@ -42,6 +42,7 @@ struct Cluster {
   std::vector<Triangle> elements;
   std::vector<std::uint32_t> faces;  ///< the user's numbers
   Aabb box;                          ///< at the last `update_boxes`
+  bool is_finite = true;             ///< all vertices, at the last `update_boxes`
   double work = 0;                   ///< of the last step, in triangles
 };
 
@@ -57,7 +58,8 @@ class HomeObject {
   void set_vertex_groups(std::span<const std::uint32_t> groups, std::span<const std::uint32_t> masks);
   /// The boxes of all clusters, for a search of these shapes. O(n).
   void update_boxes(const SearchedShapes& shapes, const Parallel& parallel);
-  /// The vertices that are not finite and that an element uses, as the user's numbers, ascending.
+  /// After `update_boxes`: the vertices that are not finite and that an element uses, as the user's numbers,
+  /// ascending.
   void list_non_finite(const SearchedShapes& shapes, std::vector<NonFiniteVertex>& vertices) const;
   /// How far the vertices of a cluster move, without the mean of their ways.
   VertexWays ways_of(const Cluster& cluster) const;
