@@ -114,6 +114,7 @@ check: experiment
 	tools/make_python.py --check
 	tools/check_api.py
 	tools/make_paper.py --check
+	benchmarks/distributed_model.py --check
 	tools/generate_docs.sh --check build/release/bin/supple
 
 format:
