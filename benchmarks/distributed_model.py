@@ -31,7 +31,7 @@ WEAK = [(1, "tiles:250"), (4, "tiles:500"), (16, "tiles:1000"), (64, "tiles:2000
         (1, "balls:27:20"), (8, "balls:216:20"), (64, "balls:1728:20")]
 STEPS = 3
 PAGE, FIGURE = ROOT / "docs/distributed.md", ROOT / "docs/figures/distributed_scaling.svg"
-MARKS = "<!-- begin how-it-scales -->\n", "<!-- end how-it-scales -->\n"
+MARKS = "<!-- from how_it_scales.md -->\n", "<!-- up to here -->\n"
 
 FITTED = 16  # the model is fitted to runs on at most so many ranks, and tested on the others
 # A rank is a core of Frontier: 64 cores share four network cards of 200 Gb/s.
