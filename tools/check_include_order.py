@@ -34,8 +34,8 @@ PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "experime
 LISTS = ["examples"]
 # Folders of the viewer that others may include although they are not public: "session/scene_view.hpp".
 SHARED = {"viewer/server": ["session"], "cli": ["session", "export", "server"], "experiments": ["session"]}
-# Programs that are built on the parts of another one.
-BUILT_ON = {"experiments": "cli"}
+# Programs that are built on the parts of another one; a benchmark divides space as a distributed scene does.
+BUILT_ON = {"experiments": "cli", "benchmarks": "distributed/src"}
 PUBLIC = ["include"] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
