@@ -129,14 +129,14 @@ NothingToTest lack_of_quality(ContactKinds kind) {
                                            : NothingToTest::no_solid;
 }
 
-/// Calls `accept(a, b)` for pairs of candidates that may be paired by their groups, until it returns true.
-/// After many pairs, true is assumed.
+/// Calls `accept(a, b)` for pairs of objects that may be paired by their groups, until it returns true. After
+/// many pairs, true is assumed.
 template <class Accept>
-bool any_pair(std::span<const TestableObject* const> candidates, const Accept& accept) {
+bool any_pair(std::span<const TestableObject> objects, const Accept& accept) {
   std::size_t left = 1 << 16;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    for (std::size_t j = i + 1; j < candidates.size(); ++j) {
-      const TestableObject &a = *candidates[i], &b = *candidates[j];
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    for (std::size_t j = i + 1; j < objects.size(); ++j) {
+      const TestableObject &a = objects[i], &b = objects[j];
       if (left-- == 0) return true;
       if (a.may_pair(b) && a.vertex_groups.accept(b.vertex_groups) && accept(a, b)) return true;
     }
@@ -166,38 +166,29 @@ TestableObject testable_object(ContactKinds kind, ElementKinds elements, const W
   return found;
 }
 
-std::optional<NothingToTest> nothing_to_test(ContactKinds kind, std::span<const TestableObject> objects,
+std::optional<NothingToTest> nothing_to_test(ContactKinds kind, std::vector<TestableObject>& objects,
                                              const PairFilter& filter) {
-  std::vector<const TestableObject*> candidates;
-  for (const TestableObject& object : objects) {
-    if (object.takes_part) candidates.push_back(&object);
-  }
-  const auto any = [](const auto& list, auto holds) { return std::any_of(list.begin(), list.end(), holds); };
+  const auto any = [&](auto holds) { return std::any_of(objects.begin(), objects.end(), holds); };
   if (objects.empty()) return NothingToTest::no_objects;
-  if (candidates.empty())
-    return any(objects, [](const TestableObject& object) { return object.has_elements; })
-               ? NothingToTest::not_finite
-               : NothingToTest::no_elements;
-  const auto any_candidate = [&](auto member) {
-    return any(candidates, [&](const TestableObject* object) { return object->*member; });
-  };
-  if (!any_candidate(&TestableObject::has_quality)) return lack_of_quality(kind);
-  if (any(candidates, [](const TestableObject* object) {
-        return object->has_quality && object->may_touch_itself && object->has_separate_elements;
+  const bool has_elements = any([](const TestableObject& object) { return object.has_elements; });
+  std::erase_if(objects, [](const TestableObject& object) { return !object.takes_part; });
+  if (objects.empty()) return has_elements ? NothingToTest::not_finite : NothingToTest::no_elements;
+  if (!any([](const TestableObject& object) { return object.has_quality; })) return lack_of_quality(kind);
+  if (any([](const TestableObject& object) {
+        return object.has_quality && object.may_touch_itself && object.has_separate_elements;
       }))
     return std::nullopt;
-  if (candidates.size() == 1) {
-    if (!candidates[0]->tests_itself) return NothingToTest::one_object;
-    return candidates[0]->may_touch_itself ? NothingToTest::shared_vertex : NothingToTest::groups;
+  if (objects.size() == 1) {
+    if (!objects[0].tests_itself) return NothingToTest::one_object;
+    return objects[0].may_touch_itself ? NothingToTest::shared_vertex : NothingToTest::groups;
   }
-  if (!any(candidates, [](const TestableObject* object) { return !object->is_static; }))
-    return NothingToTest::all_static;
+  if (!any([](const TestableObject& object) { return !object.is_static; })) return NothingToTest::all_static;
   PairableObjects pairable;
   bool is_pairable = false;
-  for (const TestableObject* const object : candidates) is_pairable = pairable.add(*object) || is_pairable;
-  if (!is_pairable || !any_pair(candidates, [](const auto&, const auto&) { return true; }))
+  for (const TestableObject& object : objects) is_pairable = pairable.add(object) || is_pairable;
+  if (!is_pairable || !any_pair(objects, [](const auto&, const auto&) { return true; }))
     return NothingToTest::groups;
-  if (filter && !any_pair(candidates, [&](const auto& a, const auto& b) { return filter(a.id, b.id); }))
+  if (filter && !any_pair(objects, [&](const auto& a, const auto& b) { return filter(a.id, b.id); }))
     return NothingToTest::filter;
   return std::nullopt;
 }

@@ -65,8 +65,9 @@ struct TestableObject {
 
 TestableObject testable_object(ContactKinds kind, ElementKinds elements, const WorldObject& object,
                                ObjectId id, bool tests_itself);
-/// Why there is nothing to test of these objects, if so. An empty filter lets all pairs through.
-std::optional<NothingToTest> nothing_to_test(ContactKinds kind, std::span<const TestableObject> objects,
+/// Why there is nothing to test of these objects, if so. Erases those that do not take part. An empty filter
+/// lets all pairs through.
+std::optional<NothingToTest> nothing_to_test(ContactKinds kind, std::vector<TestableObject>& objects,
                                              const PairFilter& filter);
 
 /// Objects that may be paired by their groups, added one after the other.
