@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <stop_token>
 #include <string>
 
+#include "random_lives.hpp"
 #include "supple/distributed.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
@@ -149,8 +151,7 @@ void write_file(const std::string& path, const std::string& bytes) {
 }
 
 TEST(DistributedErrors, OfCheckpoints) {
-  const std::string path = testing::TempDir() + "supple_bad_checkpoint_" +
-                           std::to_string(DistributedScene(MPI_COMM_WORLD).rank_count());
+  const std::string path = path_of_job("supple_bad_checkpoint");
   const auto error_of_load = [&](const std::string& file) {
     return error_of([&] { DistributedScene(MPI_COMM_WORLD).load(file); });
   };
@@ -164,6 +165,7 @@ TEST(DistributedErrors, OfCheckpoints) {
             std::string::npos);
   EXPECT_NE(error_of_load(path + "_missing").find(path + "_missing: cannot be opened"), std::string::npos);
   const std::string bytes = bytes_of_file(path);
+  MPI_Barrier(MPI_COMM_WORLD);  // before rank 0 writes others
   const auto with = [&](const std::string& changed) {
     if (scene.rank() == 0) write_file(path, changed);
     MPI_Barrier(MPI_COMM_WORLD);
@@ -179,12 +181,13 @@ TEST(DistributedErrors, OfCheckpoints) {
   later[8] = 7;
   EXPECT_NE(with(later).find("version 7"), std::string::npos);
   EXPECT_EQ(with(bytes), "");
+  if (scene.rank() == 0) std::remove(path.c_str());
 }
 
 /// Changed bytes give an error or other numbers, but never undefined behaviour.
 TEST(DistributedErrors, OfDamagedCheckpoints) {
-  if (DistributedScene(MPI_COMM_WORLD).rank() != 0) return;
-  const std::string path = testing::TempDir() + "supple_damaged_checkpoint";
+  const std::string path = path_of_job("supple_damaged_checkpoint");
+  if (rank_of_world() != 0) return;
   DistributedScene scene(MPI_COMM_SELF, {.scene = {.threads = 1}});
   const TriangleMesh box = make_box({1, 1, 1}, 1);
   scene.add(ObjectId{0}, box.positions, box.triangles, {.name = "box", .edges = {{0, 1}}, .points = {2}});
@@ -203,6 +206,7 @@ TEST(DistributedErrors, OfDamagedCheckpoints) {
     errors += error_of([&] { restarted.load(path); }).empty() ? 0 : 1;
   }
   EXPECT_GT(errors, 50);
+  std::remove(path.c_str());
 }
 
 TEST(DistributedErrors, AStopOnOneRankStopsAll) {

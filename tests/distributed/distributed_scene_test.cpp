@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <numeric>
@@ -342,7 +343,8 @@ TEST(DistributedScene, TheFirstOfTrianglesAtTheSameDistance) {
 /// A checkpoint of all ranks goes on with one rank, and one of one rank goes on with all: each time with the
 /// results and events of a scene that never stopped.
 TEST(DistributedScene, ACheckpointGoesOnWithOtherRanks) {
-  const std::string path = testing::TempDir() + "supple_checkpoint_" + std::to_string(size_of_world());
+  const std::string path = path_of_job("supple_checkpoint"),
+                    own_path = path + "_of_" + std::to_string(rank_of_world());
   for (std::uint64_t seed = 151; seed < 152 + life_count(); ++seed) {
     Lives lives(seed, small_clusters());
     for (int i = 0; i < 6; ++i) lives.add_object(false);
@@ -359,7 +361,7 @@ TEST(DistributedScene, ACheckpointGoesOnWithOtherRanks) {
           alone.load(path);
           EXPECT_EQ(alone.objects().size(), lives.objects.size());
           MPI_Barrier(MPI_COMM_WORLD);
-          alone.save(path + "_of_" + std::to_string(rank_of_world()));
+          alone.save(own_path);
         }
         MPI_Barrier(MPI_COMM_WORLD);
         lives.distributed = DistributedScene(MPI_COMM_WORLD, small_clusters());
@@ -372,6 +374,8 @@ TEST(DistributedScene, ACheckpointGoesOnWithOtherRanks) {
       if (step == 2 || step == 4) lives.settle_all();
     }
   }
+  std::remove(own_path.c_str());
+  if (rank_of_world() == 0) std::remove(path.c_str());
 }
 
 TEST(DistributedScene, WorkIsSpreadOverTheRanks) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <mpi.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -25,6 +27,13 @@ inline int size_of_world() {
   int size = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &size);
   return size;
+}
+
+/// The same file for all ranks of this job, and for no other job.
+inline std::string path_of_job(const std::string& name) {
+  int job = static_cast<int>(getpid());
+  MPI_Bcast(&job, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  return testing::TempDir() + name + "_" + std::to_string(job);
 }
 
 /// An object of both scenes. All ranks know all of them.
