@@ -5,8 +5,9 @@ usage: distributed_model.py measure PROGRAM     runs PROGRAM, writes benchmarks/
        distributed_model.py                     writes the section and the figure of docs/distributed.md
        distributed_model.py --check             writes nothing, fails when the section is out of date
 
-PROGRAM is supple_distributed_ranks. The ranks share the cores of one machine, so only counts and the processor
-time outside of MPI say something; see benchmarks/distributed_ranks.cpp. A run of all takes 20 minutes and 12 GB.
+PROGRAM is supple_distributed_ranks. The ranks share the cores of one machine, so only counts and the
+processor time outside of MPI say something; see benchmarks/distributed_ranks.cpp. A run of all takes 20
+minutes and 12 GB.
 """
 
 import csv
@@ -52,10 +53,11 @@ def measure(program):
         done = subprocess.run([*launcher, str(ranks), program, workload, str(STEPS)], capture_output=True, text=True,
                               env=environment, check=True)
         rows.append(json.loads(done.stdout))
+        compiler = rows[-1].pop("compiler")
         print(rows[-1], flush=True)
     with RESULTS.open("w", newline="", encoding="utf-8") as file:
         for key, value in {"date": datetime.date.today(), "commit": commit,
-                           "processor": f"{processor()}, {os.cpu_count()} cores", "compiler": "g++ 12.2.0, optimised",
+                           "processor": f"{processor()}, {os.cpu_count()} cores", "compiler": compiler,
                            "command": " ".join([*launcher, "RANKS supple_distributed_ranks WORKLOAD", str(STEPS)])}.items():
             file.write(f"# {key}: {value}\n")
         table = csv.DictWriter(file, rows[0], lineterminator="\n")

@@ -32,6 +32,12 @@
 namespace supple {
 namespace {
 
+#ifdef __clang__
+constexpr const char* compiler = __VERSION__;
+#else
+constexpr const char* compiler = "g++ " __VERSION__;
+#endif
+
 /// An object, or the part of it that this rank has.
 struct Owned {
   ObjectId id;
@@ -278,10 +284,11 @@ int run(int argc, char** argv) {
         "\"messages\": %.0f, \"needed_triangles\": %.0f, \"imbalance\": %.3f, \"megabytes_of_rank\": %.1f, "
         "\"cpu_seconds_of_rank\": %.6f, \"cpu_seconds\": %.6f, \"needed_triangles_of_rank\": %.0f, "
         "\"sends_of_rank\": %.0f, \"collectives\": %llu, \"clusters\": %.0f, \"cluster_pairs\": %.0f, "
-        "\"least_positions\": %.0f, \"surface_positions\": %.0f}\n",
+        "\"least_positions\": %.0f, \"surface_positions\": %.0f, \"compiler\": \"%s\"}\n",
         argv[1], is_plain ? 0 : ranks, is_plain ? std::atoi(argv[4]) : 1, triangles, sums[0], median(seconds),
         most[0], sums[1], most[1], sums[2], sums[3], work.imbalance, most[2], most[3], sums[4], most[4],
-        most[5], static_cast<unsigned long long>(calls.collectives), sums[5], sums[6], sums[7], sums[8]);
+        most[5], static_cast<unsigned long long>(calls.collectives), sums[5], sums[6], sums[7], sums[8],
+        compiler);
   }
   return 0;
 }

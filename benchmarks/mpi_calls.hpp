@@ -16,7 +16,7 @@ struct MpiCalls {
 };
 inline MpiCalls mpi_calls;
 
-/// Of this thread.
+/// The processor time that this thread has used.
 inline double cpu_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

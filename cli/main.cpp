@@ -1,6 +1,3 @@
-#include <unistd.h>
-
-#include <filesystem>
 #include <string_view>
 #include <vector>
 
@@ -44,15 +41,9 @@ int run(const CommandLine& line) {
   return line.exit_status;
 }
 
-/// Replaces this process by the program `supple-experiment`, which is beside this program or in PATH. Throws
-/// `Error` when it is in neither.
+/// Continues as the program of experiments. Throws `Error` when there is none.
 [[noreturn]] void run_experiments(char** arguments) {
-  char name[] = "supple-experiment";
-  std::error_code unknown;
-  const auto beside = std::filesystem::read_symlink("/proc/self/exe", unknown).replace_filename(name);
-  arguments[0] = name;
-  execv(beside.c_str(), arguments);
-  execvp(name, arguments);
+  become_program("supple-experiment", arguments);
   throw Error(
       "the program supple-experiment is neither beside this program nor in PATH; build it by: cmake --build "
       "--preset release --target supple_experiment");

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -96,6 +97,14 @@ int run_program(const std::function<int()>& run) {
     fmt::print(stderr, "supple: {}\n", one_line(error.what()));
     return exit_unusable;
   }
+}
+
+void become_program(std::string name, char** arguments) {
+  std::error_code unknown;
+  const auto beside = std::filesystem::read_symlink("/proc/self/exe", unknown).replace_filename(name);
+  arguments[0] = name.data();
+  execv(beside.c_str(), arguments);
+  execvp(name.c_str(), arguments);
 }
 
 }  // namespace supple::cli

@@ -1,13 +1,11 @@
 #include "moving/launcher.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <system_error>
 
 #include "base/exit_status.hpp"
+#include "base/run_program.hpp"
 #include "supple/error.hpp"
 
 namespace supple::cli {
@@ -39,12 +37,7 @@ LaunchedProcess launched_process() {
 }
 
 void run_as_rank(const LaunchedProcess& process, char** arguments) {
-  char name[] = "supple-mpi";
-  std::error_code unknown;
-  const auto beside = std::filesystem::read_symlink("/proc/self/exe", unknown).replace_filename(name);
-  arguments[0] = name;
-  execv(beside.c_str(), arguments);
-  execvp(name, arguments);
+  become_program("supple-mpi", arguments);
   // Rank 0 reports it. The launcher ends the job at the first status that is not 0.
   if (process.rank != 0) std::_Exit(exit_done);
   throw Error(fmt::format(

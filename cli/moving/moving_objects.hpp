@@ -37,7 +37,7 @@ class MovingObjects {
   void remember_positions();
   /// The objects whose straight paths in the last step are not their motion, ascending.
   virtual std::vector<ObjectId> turned();
-  /// Of all bodies, ascending by object. Of several ranks, only rank 0 knows it.
+  /// The energies of all bodies, ascending by object. When there are several ranks, only rank 0 has them.
   virtual std::vector<BodyEnergy> energies();
   /// See `viewer::warning_of_long_steps`.
   virtual std::optional<std::string> warning_of_long_steps();

@@ -154,15 +154,19 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   ranks.together([&] { send_results(); });
   send_lists();
   ranks.together([&] { lists_.list(result_); });
+  end_step();
+  list_untested();
+  result_.untested = untested_;
+  count_messages();
+  ranks.together([&] {
+    for (std::size_t list = 0; list < pair_lists; ++list) events_[list].prepare(lists_.pairs[list]);
+  });
+  // From here on, nothing may run out of memory on one rank.
   for (std::size_t list = 0; list < pair_lists; ++list) events_[list].update(lists_.pairs[list]);
   result_.volume_events = events_[0].events();
   result_.contact_events = events_[1].events();
   result_.proximity_events = events_[2].events();
   result_.penetration_events = events_[3].events();
-  end_step();
-  list_untested();
-  result_.untested = untested_;
-  count_messages();
   result_.stats.total_seconds = total.lap();
   gather_step_stats();
   ++step_;

@@ -386,7 +386,7 @@ CONTRACTS = {
     'DistributedScene::set_static':
         'As `Scene.set_static`.',
     'DistributedScene::set_vertex_groups':
-        'Of the vertices that this rank added, in its order; parts give the vertices that they share the same numbers.',
+        'As `Scene.set_vertex_groups` for the vertices that this rank added, in its order. Ranks that share a vertex give it the same numbers.',
     'DistributedScene::stats':
         'What this rank did in the last collective call.',
     'ElementVertices::begin':

@@ -121,8 +121,8 @@ class DistributedScene {
   void set_min_separation(ObjectId id, double separation);
   /// As `Scene::set_self_collision`.
   void set_self_collision(ObjectId id, bool enabled);
-  /// Of the vertices that this rank added, in its order; parts give the vertices that they share the same
-  /// numbers.
+  /// As `Scene::set_vertex_groups` for the vertices that this rank added, in its order. Ranks that share a
+  /// vertex give it the same numbers.
   void set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
                          std::span<const std::uint32_t> masks);
   /// As `Scene::set_pair_filter`. All ranks set a function that gives the same answers. In each collective
