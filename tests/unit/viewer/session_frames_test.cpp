@@ -245,5 +245,27 @@ TEST(ViewerFrames, FarAwayFloatsStayPrecise) {
     for (const double x : corner) EXPECT_LT(std::fabs(x), 4);
 }
 
+TEST(ViewerFrames, BorderIsSentWithoutTheCentre) {
+  SceneView show = touching_balls();
+  TestPage open(show);
+  EXPECT_EQ(open.scene().json["border"], nullptr);
+  show.simulation.border = Border{Vec3d{-4, 0, 0}, Vec3d{12, 2, 2}};
+  TestPage page(show);
+  const ViewerMessage scene = page.scene();
+  const Vec3d center = center_of(scene);
+  EXPECT_EQ(scene.json["border"], (Json{{-4 - center.x, -center.y, -center.z},
+                                        {12 - center.x, 2 - center.y, 2 - center.z}}));
+}
+
+TEST(ViewerFrames, SayWhatWasNotTested) {
+  SceneView show = touching_balls();
+  TestPage tested(show);
+  EXPECT_EQ(tested.frame().json["untested"], Json::array());
+  show.objects.resize(1);
+  TestPage page(show);
+  EXPECT_EQ(page.frame().json["untested"],
+            (Json{{{"kind", "intersection"}, {"reason", "one_object"}}}));
+}
+
 }  // namespace
 }  // namespace supple::viewer

@@ -377,6 +377,15 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.begin_object();
   for (const Omission& omission : omissions_) json_.member(omission.layer, omission.count);
   json_.end_object();
+  json_.key("untested");
+  json_.begin_array();
+  for (const UntestedKind& untested : frame.source.scene().result().untested) {
+    json_.begin_object();
+    json_.member("kind", word_of(untested.kind));
+    json_.member("reason", word_of(untested.reason));
+    json_.end_object();
+  }
+  json_.end_array();
   json_.end_object();
   message_->add_text(json_.text());
 }

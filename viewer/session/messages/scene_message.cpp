@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -49,6 +50,12 @@ void add_place(const Stage& stage, JsonText& json) {
   json.begin_array();
   json.value(extent.empty() ? Vec3d{} : extent.low - center);
   json.value(extent.empty() ? Vec3d{} : extent.high - center);
+  json.end_array();
+  json.key("border");
+  const std::optional<Border>& border = stage.show().simulation.border;
+  if (!border || !is_finite((*border)[0]) || !is_finite((*border)[1])) return json.null();
+  json.begin_array();
+  for (const Vec3d& corner : *border) json.value(corner - center);
   json.end_array();
 }
 

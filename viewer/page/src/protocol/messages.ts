@@ -41,6 +41,7 @@ export interface SceneText {
   generation: number;
   center: Vector;
   bounds: [Vector, Vector];
+  border?: [Vector, Vector] | null;
   objects: SceneObject[];
   frames: number | null;
   time_step: number;
@@ -70,6 +71,8 @@ export interface FrameText {
   loop?: boolean;
   octree_levels: (number | null)[];
   omitted: Record<string, number>;
+  /** Kinds of contacts for which there was nothing to test, and why. */
+  untested: { kind: string; reason: string }[];
 }
 
 /** What begins and ends: contacts, collisions of the narrow phase, overlaps of the objects' volumes. */
@@ -244,6 +247,7 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(isCount(s.generation), "generation");
   need(isVector(s.center), "center");
   need(Array.isArray(s.bounds) && s.bounds.length === 2 && s.bounds.every(isVector), "bounds");
+  need(!s.border || (s.border.length === 2 && s.border.every(isVector)), "border");
   need(s.frames === null || isCount(s.frames), "frames");
   need((s.frames !== null) === (s.source === "recording"), "frames");
   need(isNumber(s.time_step), "time_step");
@@ -288,8 +292,10 @@ function frameText(json: Record<string, unknown>): FrameText {
   need(isNumber(f.speed), "speed");
   f.octree_levels ??= [];
   f.omitted ??= {};
+  f.untested ??= [];
   need(Array.isArray(f.octree_levels) && f.octree_levels.every((level) => level === null || isCount(level)), "octree_levels");
   need(typeof f.omitted === "object" && Object.values(f.omitted).every(isCount), "omitted");
+  need(Array.isArray(f.untested) && f.untested.every((entry) => isText(entry?.kind) && isText(entry?.reason)), "untested");
   return f;
 }
 
