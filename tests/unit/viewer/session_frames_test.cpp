@@ -12,14 +12,15 @@
 namespace supple::viewer {
 namespace {
 
-/// A value of the frame's statistics, found by its name.
+/// A value of the last step's statistics, found by its name.
 double statistic(const ViewerMessage& scene, const ViewerMessage& frame, const std::string& name) {
   const auto names = scene.json["statistics"].get<std::vector<std::string>>();
   const auto found = std::find(names.begin(), names.end(), name);
   EXPECT_NE(found, names.end()) << name;
   const std::vector<double> values = frame.values<double>(43);
-  EXPECT_EQ(values.size(), names.size());
-  return values[static_cast<std::size_t>(found - names.begin())];
+  EXPECT_GE(values.size(), names.size());
+  EXPECT_EQ(values.size() % names.size(), 0u);
+  return values[values.size() - names.size() + static_cast<std::size_t>(found - names.begin())];
 }
 
 TEST(ViewerFrames, ShowsWhatTheLibraryFinds) {
@@ -174,6 +175,47 @@ TEST(ViewerFrames, EventsAreThoseSinceTheLastFrame) {
       << "after a reset, the page knows of no pairs";
 }
 
+/// A frame brings the statistics of every step since the last frame, also of steps without a frame.
+TEST(ViewerFrames, StatisticsOfEveryStepArrive) {
+  const SceneView show = touching_balls();
+  Simulation simulation = simulation_of(show);
+  TestPage page(show);
+  const Json names = page.scene().json["statistics"];
+  const std::size_t columns = names.size();
+  const auto contacts = static_cast<std::size_t>(std::find(names.begin(), names.end(), "contacts") - names.begin());
+  std::vector<double> expected{static_cast<double>(simulation.scene().result().contacts.size())}, sent;
+  const auto take = [&](const ViewerMessage& frame) {
+    const std::vector<double> values = frame.values<double>(43);
+    for (std::size_t row = 0; row < values.size() / columns; ++row) sent.push_back(values[row * columns + contacts]);
+  };
+  take(page.frame());
+  for (const int count : {1, 7, 2, 60}) {
+    take(page.frame_after_steps(count));
+    for (int i = 0; i < count; ++i)
+      expected.push_back(static_cast<double>(simulation.step().contacts.size()));
+  }
+  EXPECT_EQ(sent, expected);
+  page.session.greet();
+  page.scene();
+  sent.clear();
+  take(page.frame());
+  EXPECT_EQ(sent, expected) << "a page that comes again gets all steps again";
+  page.say({{"do", "reset"}});
+  page.scene();
+  EXPECT_EQ(page.frame().section(43).count, columns);
+}
+
+TEST(ViewerFrames, StatisticsOfTheLastStepsAreKeptForAPageThatTakesNoFrames) {
+  TestPage page(touching_balls());
+  const std::size_t columns = page.scene().json["statistics"].size();
+  page.frame();
+  page.ask({{"do", "step"}, {"count", 5000}});
+  for (int i = 0; i < 5000; ++i) page.session.advance(0);
+  const std::size_t rows = page.frame().section(43).count / columns;
+  EXPECT_GE(rows, 3000u);
+  EXPECT_LE(rows, 4000u);
+}
+
 TEST(ViewerFrames, ContinuousContactsAreThoseOfTheLibrary) {
   SceneView show = touching_balls();
   show.simulation.scene.contacts = ContactKinds::continuous;
@@ -253,8 +295,8 @@ TEST(ViewerFrames, BorderIsSentWithoutTheCentre) {
   TestPage page(show);
   const ViewerMessage scene = page.scene();
   const Vec3d center = center_of(scene);
-  EXPECT_EQ(scene.json["border"], (Json{{-4 - center.x, -center.y, -center.z},
-                                        {12 - center.x, 2 - center.y, 2 - center.z}}));
+  EXPECT_EQ(scene.json["border"],
+            (Json{{-4 - center.x, -center.y, -center.z}, {12 - center.x, 2 - center.y, 2 - center.z}}));
 }
 
 TEST(ViewerFrames, SayWhatWasNotTested) {
@@ -263,8 +305,7 @@ TEST(ViewerFrames, SayWhatWasNotTested) {
   EXPECT_EQ(tested.frame().json["untested"], Json::array());
   show.objects.resize(1);
   TestPage page(show);
-  EXPECT_EQ(page.frame().json["untested"],
-            (Json{{{"kind", "intersection"}, {"reason", "one_object"}}}));
+  EXPECT_EQ(page.frame().json["untested"], (Json{{{"kind", "intersection"}, {"reason", "one_object"}}}));
 }
 
 }  // namespace

@@ -168,6 +168,7 @@ async function isPickedAndListed(stage) {
 
 async function isNamedInTheInspector(stage) {
   const page = await open(stage);
+  await page.getByRole("tab", { name: "Inspect" }).click();
   await page.getByLabel("Object A", { exact: true }).fill("2000");
   await page.getByLabel("Name of object A").getByText(await page.evaluate(() => supple.model.objects[2000].name), { exact: true }).waitFor();
   await page.getByLabel("Object B", { exact: true }).fill("3");

@@ -90,8 +90,8 @@ async function proximityAndDepthsShow(stage) {
   }));
   assert.equal(drawn.proximity, pairs);
   assert.equal(drawn.depths, depths);
-  await page.getByRole("tab", { name: "Contacts" }).click();
-  await page.getByText(`${pairs.toLocaleString("en")} proximity pairs`).waitFor();
+  const rows = await page.getByRole("grid", { name: "Contacts" }).getByRole("row").allTextContents();
+  assert.equal(rows.length, 2);
   for (const [label, count] of [["Proximity pairs", "proximity"], ["Depths", "depths"]]) {
     const before = await picture(page);
     await page.getByRole("checkbox", { name: label, exact: true }).uncheck();
@@ -172,6 +172,7 @@ async function octreeLevels(stage) {
 /** The levels of the narrow phase are listed, and each shows its nodes. */
 async function narrowPhaseByLevel(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS.replaceAll("0.6", "0.45")));
+  await page.getByRole("tab", { name: "Inspect" }).click();
   const panel = page.getByRole("region", { name: "Narrow phase" });
   await panel.getByRole("combobox", { name: "Object pair" }).selectOption("0 1");
   await panel.getByRole("button", { name: /^level 0/ }).click();
@@ -261,27 +262,40 @@ async function contactTableFlies(stage) {
   await page.emulateMedia({ reducedMotion: "no-preference" });  // the camera flies
   await until(page, () => supple.model.frame.contacts.length > 400);
   await pause(page);
-  await page.getByRole("tab", { name: "Contacts" }).click();
   const grid = page.getByRole("grid", { name: "Contacts" });
-  const total = await page.evaluate(() => supple.model.frame.contacts.length / 8);
-  assert.equal(Number(await grid.getAttribute("aria-rowcount")), total);
-  assert.ok((await grid.getByRole("row").count()) < 100, "rows out of sight have elements");
+  const first = await page.evaluate(() => {
+    const [a, , b] = supple.model.frame.contacts;
+    const { contacts, contactPoints, text } = supple.model.frame;
+    const places = Array.from({ length: contacts.length / 8 }, (_, i) => i).filter((i) => contacts[8 * i] === a && contacts[8 * i + 2] === b);
+    return { names: [a, b].map((object) => supple.model.objects[object].name), count: places.length, points: contactPoints.length / 8, step: text.step };
+  });
+  const total = Number(await grid.getAttribute("aria-rowcount"));
+  const row = (i) => grid.locator(`[aria-rowindex="${i}"]`);
+  assert.deepEqual((await row(1).getByRole("gridcell").allTextContents()).slice(0, 3), [`▸ ${first.names[0]}`, first.names[1], first.count.toLocaleString("en")]);
   const before = await camera(page);
-  await grid.getByRole("row").nth(3).click();
-  await until(page, () => supple.model.contact !== null);
+  await row(1).click();  // flies to the pair and opens it
+  await until(page, (rows) => Number(document.querySelector('[aria-label="Contacts"][role=grid]').getAttribute("aria-rowcount")) === rows, total + first.count);
   await settled(page);
-  const after = await camera(page);
-  assert.notDeepEqual(after.target, before.target);
-  const key = await page.evaluate(() => [...supple.model.contact]);
-  assert.deepEqual(key, await page.evaluate(() => [...supple.model.frame.contacts.slice(24, 28)]));
+  assert.notDeepEqual((await camera(page)).target, before.target);
+  assert.ok((await grid.getByRole("row").count()) < 100, "rows out of sight have elements");
+  await row(3).click();
+  const key = () => page.evaluate(() => [...supple.model.contact]);
+  const inFrame = (i) => page.evaluate((i) => [...supple.model.frame.contacts.subarray(8 * i, 8 * i + 4)], i);
+  assert.deepEqual(await key(), await inFrame(1));
   await page.keyboard.press("ArrowDown");
-  await page.keyboard.press("ArrowDown");
-  assert.deepEqual(await page.evaluate(() => [...supple.model.contact]), await page.evaluate(() => [...supple.model.frame.contacts.subarray(40, 44)]));
-  await page.keyboard.press("End");
-  assert.deepEqual(await page.evaluate(() => [...supple.model.contact]), await page.evaluate(() => [...supple.model.frame.contacts.slice(-8, -4)]));
-  await grid.locator('[aria-selected="true"]').waitFor();
-  await page.getByRole("tab", { name: "Inspect" }).click();
-  await page.getByRole("heading", { name: "Contact", exact: true }).waitFor();
+  assert.deepEqual(await key(), await inFrame(2));
+  await row(4).and(grid.locator('[aria-selected="true"]')).waitFor();
+  await page.keyboard.press("ArrowLeft");  // closes the pair
+  await until(page, (rows) => Number(document.querySelector('[aria-label="Contacts"][role=grid]').getAttribute("aria-rowcount")) === rows, total);
+  await row(1).and(grid.locator('[aria-selected="true"]')).waitFor();
+
+  await page.getByRole("searchbox", { name: "Filter contacts by name" }).fill(first.names[0]);
+  const matching = await page.evaluate((name) => new Set(Array.from({ length: supple.model.frame.contacts.length / 8 }, (_, i) => [supple.model.frame.contacts[8 * i], supple.model.frame.contacts[8 * i + 2]])
+    .filter((pair) => pair.some((object) => supple.model.objects[object].name === name)).map(String)).size, first.names[0]);
+  await page.getByText(`${matching} of ${total} pair`).waitFor();
+  assert.equal(Number(await grid.getAttribute("aria-rowcount")), matching);
+  await page.getByRole("searchbox", { name: "Filter contacts by name" }).fill("no such name");
+  await page.getByText(`0 of ${total} pair`).waitFor();
 }
 
 async function contactPointsArePicked(stage) {
@@ -316,6 +330,7 @@ async function saysThatAContactIsOne(stage) {
   const { page } = await stage.view(nine);
   await until(page, () => supple.model.frame.contacts.length > 0);
   await pause(page);
+  await page.getByRole("tab", { name: "Inspect" }).click();
   const [a, triangleA, b, triangleB] = await page.evaluate(() => [...supple.model.frame.contacts.subarray(0, 4)]);
   await page.getByLabel("Object A", { exact: true }).fill(String(a));
   await page.getByLabel("Triangle A").fill(String(triangleA));
@@ -386,28 +401,139 @@ async function staticObjectsAreNotPulled(stage) {
   await page.getByRole("log").getByText("is static").waitFor();
 }
 
-async function settingsStartAnew(stage) {
+/** Values to try; for the others the next word or the other truth. */
+const OTHER_VALUES = { max_level: "5", leaf_size: "8", tree_arity: "2", objects: "12", time_step: "0.02" };
+const TRIED = ["bounding_volume", "broad_phase", "contacts", "undecided", "rebuild_degraded", "object_octree", ...Object.keys(OTHER_VALUES)];
+
+/** After each setting, the step and the positions are kept, or the restart was announced at the field. */
+async function settingsKeepTheStateOrSayThatTheyRestart(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.text.step > 10);
+  await page.getByRole("tab", { name: "Settings" }).click();
+  await page.getByText("More options").click();
+  const settings = await page.evaluate(() => supple.model.scene.settings);
+  assert.deepEqual(settings.filter(({ restarts }) => restarts).map(({ key }) => key), ["objects", "integrator", "time_step"]);
+  for (const key of TRIED) {
+    const setting = settings.find((each) => each.key === key);
+    await pause(page);
+    await page.evaluate(() => supple.client.ask({ do: "step", count: 3 }));
+    await settled(page);
+    const state = () => page.evaluate(() => ({
+      step: supple.model.frame.text.step, run: supple.model.scene.run, generation: supple.model.scene.generation, at: supple.positionOf(0, 0),
+      rows: supple.model.history.frames.length, pairs: supple.model.history.events.contact.begin.length,
+    }));
+    const before = await state();
+    assert.ok(before.step > 0);
+    const field = page.locator(`.setting:has(#setting-${key})`);
+    assert.equal((await field.innerText()).includes("restarts"), setting.restarts, `${key} announces a wrong thing`);
+    const input = page.locator(`#setting-${key}`);
+    if (setting.kind === "truth") await input.click();
+    else if (setting.kind === "word") await input.selectOption(await input.evaluate((select) => select.options[(select.selectedIndex + 1) % select.options.length].value));
+    else {
+      await input.fill(OTHER_VALUES[key]);
+      await input.press("Enter");
+    }
+    await until(page, (old) => supple.model.scene.generation > old && supple.model.frame, before.generation);
+    const after = await state();
+    if (setting.restarts) {
+      assert.deepEqual({ step: after.step, run: after.run }, { step: 0, run: before.run + 1 }, `${key} does not restart`);
+    } else {
+      const { generation, pairs, ...kept } = before;
+      assert.deepEqual({ ...after, generation: 0, pairs: 0 }, { ...kept, generation: 0, pairs: 0 }, `${key} changes the state`);
+      if (key === "max_level") assert.equal(after.pairs, pairs, "contacts begin again");
+    }
+    assert.ok(await field.getByRole("alert").isHidden(), `${key} is refused`);
+  }
+  await page.getByRole("checkbox", { name: /^Show .*#2$/ }).first().waitFor();
+}
+
+async function boundingVolumesShow(stage) {
   const { page } = await stage.view(nine);
   await page.getByRole("checkbox", { name: "Object octrees" }).check();
   await until(page, () => supple.counts().boxes > 0);
   await page.getByRole("tab", { name: "Settings" }).click();
   await page.getByLabel("Bounding volume").selectOption("sphere");
   await until(page, () => supple.model.scene.bounding_volume === "sphere" && supple.counts().balls > 0 && supple.counts().boxes === 0);
-  await page.getByLabel("Broad phase").selectOption("sweep");
-  await until(page, () => supple.model.scene.broad_phase === "sweep");
-  const objects = page.getByLabel("Objects", { exact: true }).and(page.locator("input"));
-  await objects.fill("12");
-  await objects.press("Enter");
-  await until(page, () => supple.model.scene.objects.length === 12 && supple.model.frame);
-  await page.getByRole("checkbox", { name: /^Show .*#2$/ }).first().waitFor();
   await page.getByLabel("Contacts", { exact: true }).and(page.locator("select")).selectOption("continuous");
-  await until(page, () => supple.model.scene.contacts === "continuous");
   await until(page, () => supple.model.frame?.impacts.length > 0);
+}
+
+/** The reason is at the field, with the range; the value in effect stays. */
+async function wrongValuesAreRefused(stage) {
+  const { page } = await stage.view(nine);
+  await page.getByRole("tab", { name: "Settings" }).click();
+  const refused = [
+    ["time_step", "-1", "a finite number above 0", "0.01"], ["time_step", "0", "above 0", "0.01"], ["time_step", "soon", "\"soon\"", "0.01"],
+    ["max_level", "99", "a whole number from 0 to 32", "16"], ["max_level", "2.5", "a whole number from 0 to 32", "16"],
+    ["leaf_size", "-5", "a whole number", "64"], ["objects", "100001", "from 1 to 100000", "9"],
+  ];
+  const inEffect = (key) => page.evaluate((key) => String(key === "objects" ? supple.model.objects.length : supple.model.scene[key]), key);
+  for (const [key, value, reason, stays] of refused) {
+    assert.equal(await inEffect(key), stays);
+    const input = page.locator(`#setting-${key}`);
+    await input.fill(value);
+    await input.press("Enter");
+    const alert = page.locator(`.setting:has(#setting-${key})`).getByRole("alert");
+    await alert.getByText(reason).waitFor();
+    await alert.getByText(`The value stays ${stays}`).waitFor();
+    assert.equal(await input.getAttribute("aria-invalid"), "true");
+    assert.equal(await input.inputValue(), value, "the user can correct it");
+    await input.press("Escape");
+    assert.equal(await input.inputValue(), stays);
+    assert.ok(await alert.isHidden());
+    assert.equal(await inEffect(key), stays);
+  }
+  const seed = page.getByRole("textbox", { name: "Seed" });
+  await seed.fill("-1");
+  await seed.press("Enter");
+  await until(page, () => document.querySelector("[aria-label=Seed]").validationMessage.includes("from 0 to 18446744073709551615"));
+  const now = await step(page);
+  await until(page, (before) => supple.model.frame.text.step > before + 3, now);
+}
+
+/** While the page has not drawn the first frame, no time passes. */
+async function waitsForTheFirstFrame(stage) {
+  const program = await stage.program(join(scenes, "cloth_over_ball.toml"));
+  const page = await stage.page();
+  await page.addInitScript(() => {
+    const request = window.requestAnimationFrame.bind(window);
+    let held = [];
+    window.requestAnimationFrame = (turn) => (held ? held.push(turn) : request(turn));
+    window.release = () => {
+      const turns = held;
+      held = null;
+      for (const turn of turns) request(turn);
+    };
+    window.steps = [];
+  });
+  await page.goto(program.address);
+  await until(page, () => window.supple?.status.state === "connected");
+  await page.evaluate(() => {
+    supple.model.on("frame", ({ text }) => steps.push(text.step));
+    // What `giveCredit` of a page that draws does: so the first frame comes, but is not drawn.
+    supple.client.giveCredit();
+  });
+  await until(page, () => steps.length > 0);
+  const asks = await page.evaluate(async () => {
+    const before = performance.now();
+    let count = 0;
+    while (performance.now() < before + 300) {  // 30 steps, if time passed
+      await supple.client.ask({ do: "read", object: 0 });
+      count += 1;
+    }
+    return count;
+  });
+  assert.ok(asks > 0);
+  assert.deepEqual(await page.evaluate(() => steps), [0]);
+  await page.evaluate(() => release());
+  await until(page, () => steps.length > 5);
+  assert.equal(await page.evaluate(() => steps[1]), 1, "steps before the first frame was drawn");
 }
 
 async function integratorsChange(stage) {
   const { page } = await stage.view(join(scenes, "soft_block.toml"));
   await page.getByRole("tab", { name: "Settings" }).click();
+  await page.locator(".setting", { has: page.getByLabel("Integrator") }).getByText("restarts").first().waitFor();
   const other = await page.evaluate(() => (supple.model.scene.integrator === "verlet" ? "symplectic_euler" : "verlet"));
   await page.getByLabel("Integrator").selectOption(other);
   await until(page, (wanted) => supple.model.scene.integrator === wanted && supple.model.frame?.text.step > 0, other);
@@ -423,7 +549,10 @@ async function continuousContactsAreListed(stage) {
   assert.equal((await counts(page)).points, impacts);
   assert.equal((await counts(page)).normals, impacts);
   await page.getByRole("tab", { name: "Contacts" }).click();
-  await page.getByRole("row").first().click();
+  const grid = page.getByRole("grid", { name: "Contacts" });
+  await grid.getByText(/^hit at/).first().waitFor();
+  await grid.locator('[aria-rowindex="1"]').click();
+  await grid.locator('[aria-rowindex="2"]').click();
   await until(page, () => supple.model.contact !== null);
 }
 
@@ -439,6 +568,28 @@ async function plotsFollow(stage) {
     const colours = await markers.evaluateAll((all) => all.map((marker) => getComputedStyle(marker).borderColor));
     assert.ok(colours.length > 0 && new Set(colours).size === colours.length, `two lines have one colour: ${colours.join("; ")}`);
   }
+}
+
+/** Also steps without a frame: the simulation is faster than the page. */
+async function plotsHoldEveryStep(stage) {
+  const { page } = await stage.view(nine);
+  await page.getByRole("tab", { name: "Plots" }).click();
+  await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
+  await until(page, () => supple.model.frame.text.step > 300);
+  await page.getByText(/^\d+ fps · [\d.e+-]+× real time$/).waitFor();
+  await pause(page);
+  const { frames, times, step: last, seen, contacts, now } = await page.evaluate(() => ({
+    frames: supple.model.history.frames, times: supple.model.history.column("time"), step: supple.model.frame.text.step, seen: supple.model.framesSeen,
+    contacts: supple.model.history.column("contacts").at(-1), now: supple.model.frame.contacts.length / 8,
+  }));
+  assert.ok(seen < last, "each step had a frame, so this test shows nothing");
+  assert.deepEqual(frames, Array.from({ length: last + 1 }, (_, i) => i));
+  times.forEach((time, i) => assert.ok(Math.abs(time - 0.01 * i) < 1e-9));
+  assert.equal(contacts, now);
+  // The steps survive a reload.
+  await page.reload();
+  await until(page, () => supple.model.frame !== null);
+  assert.deepEqual(await page.evaluate(() => supple.model.history.frames), frames);
 }
 
 export const tests = [
@@ -462,8 +613,12 @@ export const tests = [
   ["pulling a vertex makes contacts", pullingMakesContacts],
   ["a soft body is pulled", pullsASoftBody],
   ["a static object says that it does not bend", staticObjectsAreNotPulled],
-  ["settings start anew", settingsStartAnew],
+  ["settings keep the state, or say that they restart", settingsKeepTheStateOrSayThatTheyRestart],
+  ["another bounding volume shows", boundingVolumesShow],
+  ["wrong values are refused at the field", wrongValuesAreRefused],
+  ["waits until the first frame is drawn", waitsForTheFirstFrame],
   ["integrators change", integratorsChange],
   ["continuous contacts", continuousContactsAreListed],
   ["plots follow", plotsFollow],
+  ["plots hold every step", plotsHoldEveryStep],
 ];

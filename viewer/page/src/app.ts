@@ -22,6 +22,7 @@ import { openSocket } from "./transport/socket";
 import { hasCargo, openWorker } from "./transport/worker";
 import { AXIS_VIEWS, type AxisView } from "./view/camera";
 import { SceneView } from "./view/scene_view";
+import { cameraOf, readView, showView, viewOf } from "./view_state";
 
 const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
   select: ["Select", "V"],
@@ -29,6 +30,8 @@ const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
   explain: ["Why no contact?", "W"],
 };
 const THEME = "supple-theme";
+/** The view of a scene is stored under this name and its title. */
+const VIEW = "supple-view ";
 
 /** The text for a failure of the session: its message, and the layers that it switched off. */
 function sayFailure({ text, layers }: { text: string; layers: Layer[] }): string {
@@ -60,9 +63,14 @@ export class App {
   private readonly connection = h("span", { class: "connection", role: "status", "aria-label": "Connection" });
   private readonly orthoButton = iconButton("perspective", "Orthographic", "O", () => this.toggleOrthographic());
   private readonly filmButton = iconButton("film", "Record a video", "Shift+V", () => this.film());
+  private drawers: HTMLButtonElement[] = [];
   private readonly toolButtons = new Map<Tool, HTMLButtonElement>();
-  private arrivals: number[] = [];
+  /** Frames of the last second: when each came, and its simulated time. */
+  private arrivals: { at: number; time: number }[] = [];
   private openTab: (name: string) => void = () => {};
+  private tab = "";
+  private hasDrawn = false;  // a frame of the present scene
+  private hasRestored = false;
 
   constructor(private readonly body: HTMLElement) {}
 
@@ -90,19 +98,43 @@ export class App {
     this.scenePanel = new ScenePanel(model, fly);
     this.player = new Player(model, this.client);
     this.tools = new Tools(model, this.client, view, inspector);
+    this.tools.onPick = () => this.openTab("Inspect");
     this.plots = new Plots(model, (frame) => this.player.seek(frame));
     this.framesDialog = new FramesDialog(
       model, view, (plan, signal, progress) => new FramesRun(model, this.client, view, plan, signal, progress).go(), (text) => this.notices.show(text),
     );
-    const tabs = this.tabs({
+    const details = this.tabs({
       Inspect: h("div", {}, inspector.element, new NodePairs(model, this.client).element),
-      Contacts: new ContactTable(model, fly).element,
+      Contacts: new ContactTable(model, (point, reach) => view.flyTo(point, reach)).element,
       Curves: new CurveTable(model, (point, reach) => view.flyTo(point, reach)).element,
       Plots: this.plots.element,
       Settings: new Settings(model, this.client).element,
     });
-    this.body.append(this.header(), this.scenePanel.element, tabs, this.player.element, this.help, this.framesDialog.element);
+    this.drawers = [this.drawer("scene", "Scene", this.scenePanel.element), this.drawer("details", "Details", details)];
+    this.body.append(this.header(), this.scenePanel.element, details, this.player.element, this.help, this.framesDialog.element);
     listenToKeys(this);
+  }
+
+  /** In a narrow window a panel is a drawer that this button opens and closes. */
+  private drawer(name: string, label: string, panel: HTMLElement): HTMLButtonElement {
+    const button = h("button", { type: "button", class: "drawer", "aria-expanded": "false", "aria-controls": `panel-${name}`, onclick: () => this.openDrawer(this.openedDrawer === name ? "" : name) }, label);
+    panel.id = `panel-${name}`;
+    panel.tabIndex = -1;
+    panel.prepend(h("button", { type: "button", class: "drawer close", "aria-label": `Close ${label}`, onclick: () => this.openDrawer("") }, "Close"));
+    return button;
+  }
+
+  private get openedDrawer(): string {
+    return this.body.dataset["drawer"] ?? "";
+  }
+
+  /** Focus follows: into the drawer, and back to its button. */
+  private openDrawer(name: string): void {
+    const before = this.drawers.find((button) => button.getAttribute("aria-controls") === `panel-${this.openedDrawer}`);
+    this.body.dataset["drawer"] = name;
+    for (const button of this.drawers) button.setAttribute("aria-expanded", String(button.getAttribute("aria-controls") === `panel-${name}`));
+    if (name) document.getElementById(`panel-${name}`)!.focus();
+    else before?.focus();
   }
 
   private header(): HTMLElement {
@@ -117,9 +149,9 @@ export class App {
     });
     const views = h("select", { "aria-label": "Axis view", title: "Axis view (1 to 6)", onchange: () => this.axisView(views) });
     views.append(h("option", { value: "" }, "View"), ...Object.keys(AXIS_VIEWS).map((name, i) => h("option", { value: name }, `${name} (${i + 1})`)));
-    return h(
+    const header = h(
       "header", { class: "top" },
-      h("span", { class: "brand" }, logo(), "Supple"), this.title, this.connection,
+      h("span", { class: "brand" }, logo(), "Supple"), this.title, this.connection, ...this.drawers,
       h("div", { class: "group tools", role: "radiogroup", "aria-label": "Tool" }, ...tools),
       h("div", { class: "group" },
         iconButton("frame", "Frame all", "F", () => this.view.frameAll()), views, this.orthoButton,
@@ -129,6 +161,11 @@ export class App {
         iconButton("theme", "Light or dark", "T", () => this.toggleTheme()),
         h("button", { type: "button", class: "icon", "aria-label": "Keyboard shortcuts", title: "Keyboard shortcuts (?)", onclick: () => this.help.showModal() }, "?")),
     );
+    // After a click the keys belong to the view again. Keys and dialogs keep the focus.
+    header.addEventListener("click", (event) => {
+      if (event.detail > 0 && (event.target as Element).closest("button:not(.drawer)")) this.canvas.focus({ preventScroll: true });
+    });
+    return header;
   }
 
   private axisView(views: HTMLSelectElement): void {
@@ -143,6 +180,7 @@ export class App {
     );
     const panels = names.map((name) => h("div", { role: "tabpanel", id: `page-${name}`, "aria-labelledby": `tab-${name}`, class: "page" }, pages[name]!));
     this.openTab = (wanted) => {
+      this.tab = wanted;
       names.forEach((name, i) => {
         panels[i]!.hidden = name !== wanted;
         buttons[i]!.setAttribute("aria-selected", String(name === wanted));
@@ -160,7 +198,7 @@ export class App {
       next.click();
       next.focus();
     });
-    this.openTab("Inspect");
+    this.openTab("Contacts");
     return h("aside", { class: "panel right", "aria-label": "Details" }, bar, ...panels);
   }
 
@@ -175,10 +213,14 @@ export class App {
       this.card.showStatus({ state: "connected" });
       this.notices.warn(scene.warnings);
       if (scene.objects.length === 0) this.notices.show("This scene has no objects.");
+      this.hasDrawn = false;
+      if (!this.hasRestored) this.restoreView();
     });
-    model.on("frame", () => {
+    model.on("frame", ({ text }) => {
       this.card.hide();
-      this.arrivals.push(performance.now());
+      const last = this.arrivals.at(-1);
+      if (last && text.time < last.time) this.arrivals = [];
+      this.arrivals.push({ at: performance.now(), time: text.time });
     });
     model.on("tool", (tool) => {
       for (const [name, button] of this.toolButtons) button.setAttribute("aria-checked", String(name === tool));
@@ -193,17 +235,44 @@ export class App {
     view.onTurn = () => {
       this.player.turn();
       this.tools.turn();
-      client.giveCredit();
+      // The session starts to play at the first credit after the first frame: when that frame has been drawn.
+      this.hasDrawn ||= model.frame !== null && view.isUpToDate;
+      if (this.hasDrawn || model.frame === null) client.giveCredit();
     };
+    for (const type of ["pagehide", "visibilitychange"]) addEventListener(type, () => this.storeView());
     setInterval(() => this.tick(), 250);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.paint());
+  }
+
+  private restoreView(): void {
+    const { model, view } = this;
+    const stored = readView(localStore(VIEW + model.scene!.title));
+    this.hasRestored = true;
+    if (!stored) return;
+    showView(model, stored);
+    const camera = cameraOf(stored);
+    if (camera && !location.hash.includes("camera=")) {
+      view.rig.state = camera;
+      view.rig.save();  // the first frame takes the camera of the address
+    }
+    if (stored.tab && document.getElementById(`tab-${stored.tab}`)) this.openTab(stored.tab);
+    this.body.classList.toggle("bare", stored.panels === false);
+    model.emit("display", null);
+  }
+
+  private storeView(): void {
+    if (!this.hasRestored) return;
+    const page = { tab: this.tab, panels: !this.body.classList.contains("bare") };
+    localStore(VIEW + this.model.scene!.title, JSON.stringify(viewOf(this.model, this.view.rig, page)));
   }
 
   /** Updates that are not needed in every frame. */
   private tick(): void {
     const now = performance.now();
-    this.arrivals = this.arrivals.filter((time) => time > now - 1000);
-    this.player.showRate(this.player.playing ? this.arrivals.length : 0);
+    this.arrivals = this.arrivals.filter(({ at }) => at > now - 1000);
+    const [first, last] = [this.arrivals[0], this.arrivals.at(-1)];
+    const factor = first && last && last.at > first.at ? (1000 * (last.time - first.time)) / (last.at - first.at) : null;
+    this.player.showRate(this.player.playing ? this.arrivals.length : 0, factor);
     this.scenePanel.showCounts(this.view.layers.counts());
   }
 
@@ -253,6 +322,7 @@ export class App {
 
   escape(): void {
     if (this.tools.isPulling) return this.tools.release();
+    if (this.openedDrawer) return this.openDrawer("");
     if (this.model.tool !== "select") return this.model.setTool("select");
     this.model.clearSelection();
     this.model.setExplained([], null);
@@ -277,7 +347,6 @@ export class App {
   /** Copies the colours of the theme to elements that style sheets do not reach. */
   private paint(): void {
     this.view.setBackground(colourOf("--ground"));
-    this.view.setInk(colourOf("--ink"));
     this.plots.rebuild();
   }
 

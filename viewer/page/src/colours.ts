@@ -9,12 +9,20 @@ export const OKABE_ITO = {
   purple: "#cc79a7",
 } as const;
 
-/** Colours of objects. Vermillion is reserved for contacts, yellow for the selection. */
-const OBJECTS = ["#56b4e9", "#e6b450", "#3fae8f", "#cc9bb9", "#4f8fc0", "#a9b4bd", "#8fb87a", "#b79a86"];
-export const objectColour = (index: number): string => OBJECTS[index % OBJECTS.length]!;
+/** Colours of objects: pale, so that the dark colours of marks have a contrast of 3:1 on each of them. */
+export const OBJECT_COLOURS = ["#8ecae6", "#f2c879", "#86d3b8", "#e9b8d2", "#a9bdf2", "#c9d1d8", "#b9d89c", "#dcbfa8"];
+export const objectColour = (index: number): string => OBJECT_COLOURS[index % OBJECT_COLOURS.length]!;
+
+/** Colours of marks, the same in both themes. A light halo separates them from a dark ground. */
+export const MARKS = {
+  contact: "#c1121f", depth: "#7b1fa2", normal: "#0b3d91", curve: "#00552b", pair: "#0b5d4e", candidate: "#1d4ed8", vertex: "#7b1fa2", selection: "#0b3d91",
+} as const;
+export const HALO = "#ffffff";
+
+/** Colours of gaps, from those that take less than a quarter of the margins to those that take all of them. */
+export const GAPS = ["#a63c00", "#7a5c00", "#00695c", "#1d4ed8"];
+export const gapLevel = (share: number): number => (share < 0.25 ? 0 : share < 0.5 ? 1 : share < 0.75 ? 2 : 3);
 
 /** Colours of octree levels and regions. */
 export const LEVELS = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.purple, OKABE_ITO.sky, OKABE_ITO.vermillion];
-/** The level of the colour of a proximity pair: vermillion up to a quarter of the margins, then orange, green, blue. */
-export const proximityLevel = (share: number): number => (share < 0.25 ? 5 : share < 0.5 ? 1 : share < 0.75 ? 2 : 0);
 export const levelColour = (level: number): string => LEVELS[level % LEVELS.length]!;

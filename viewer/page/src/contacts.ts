@@ -54,16 +54,105 @@ export function kindAt(frame: ContactData, place: number, kinds: Kinds): string 
   return hasImpacts(frame) ? kinds.impact[frame.impacts[STRIDE * place + 6]!]!.join("–") : kinds.contact[frame.contacts[STRIDE * place + 4]!]!;
 }
 
-/** Whether one side of a contact is the given object. */
-export function involves(frame: ContactData, place: number, object: number): boolean {
-  const from = STRIDE * place;
-  return hasImpacts(frame)
-    ? frame.impacts[from] === object || frame.impacts[from + 3] === object
-    : frame.contacts[from] === object || frame.contacts[from + 2] === object;
-}
-
 /** The array that has the points of a contact, the first row, and the number of rows. */
 export function pointsAt(frame: FrameMessage, place: number): { data: Float32Array; first: number; count: number } {
   if (hasImpacts(frame)) return { data: frame.impactPoints, first: place, count: 1 };
   return { data: frame.contactPoints, first: frame.contacts[STRIDE * place + 6]!, count: frame.contacts[STRIDE * place + 5]! };
+}
+
+/** Rows of one kind that belong to a pair: contacts, impacts, proximity pairs, or vertices inside the other object. */
+export interface Run {
+  kind: "contacts" | "impacts" | "proximity" | "penetrations";
+  first: number;
+  count: number;
+}
+
+/** All that two objects, or one object with itself, have in common in a frame. */
+export interface TouchingPair {
+  a: number;
+  b: number;
+  runs: Run[];
+  count: number;
+  /** The smallest distance of proximity pairs. */
+  gap: number | null;
+  /** The largest depth of vertices and curves. */
+  depth: number | null;
+  /** The earliest impact, as a part of the step. */
+  time: number | null;
+}
+
+export const isTouching = ({ runs }: TouchingPair): boolean => runs.some(({ kind }) => kind === "contacts" || kind === "penetrations");
+export const isHit = ({ runs }: TouchingPair): boolean => runs.some(({ kind }) => kind === "impacts");
+
+type PairData = Pick<FrameMessage, "contacts" | "impacts" | "impactPoints" | "proximityPairs" | "proximityPoints" | "penetrations" | "penetrationPoints" | "curves" | "curvePoints">;
+
+const found = new WeakMap<PairData, TouchingPair[]>();
+
+/** The pairs of objects that touch, collide or are near in a frame, in the order of their objects. */
+export function pairsOf(frame: PairData): TouchingPair[] {
+  let pairs = found.get(frame);
+  if (!pairs) found.set(frame, (pairs = findPairs(frame)));
+  return pairs;
+}
+
+function findPairs(frame: PairData): TouchingPair[] {
+  const pairs = new Map<string, TouchingPair>();
+  const pairAt = (one: number, other: number): TouchingPair => {
+    const [a, b] = one < other ? [one, other] : [other, one];
+    const key = `${a} ${b}`;
+    let pair = pairs.get(key);
+    if (!pair) pairs.set(key, (pair = { a, b, runs: [], count: 0, gap: null, depth: null, time: null }));
+    return pair;
+  };
+  // Rows of a kind are sorted by their objects, so those of a pair follow one another.
+  const addRuns = (kind: Run["kind"], data: Uint32Array, stride: number, second: number, measure: (pair: TouchingPair, place: number) => void) => {
+    let pair: TouchingPair | null = null;
+    for (let place = 0, i = 0; i < data.length; ++place, i += stride) {
+      const isNext = place === 0 || data[i] !== data[i - stride] || data[i + second] !== data[i - stride + second];
+      if (isNext) {
+        pair = pairAt(data[i]!, data[i + second]!);
+        pair.runs.push({ kind, first: place, count: 0 });
+      }
+      pair!.runs[pair!.runs.length - 1]!.count += 1;
+      pair!.count += 1;
+      measure(pair!, place);
+    }
+  };
+  const deepen = (pair: TouchingPair, depth: number) => (pair.depth = Math.max(pair.depth ?? 0, depth));
+  addRuns("contacts", frame.contacts, STRIDE, 2, () => {});
+  addRuns("impacts", frame.impacts, STRIDE, 3, (pair, i) => (pair.time = Math.min(pair.time ?? 1, frame.impactPoints[8 * i + 3]!)));
+  addRuns("proximity", frame.proximityPairs, 2, 1, (pair, i) => (pair.gap = Math.min(pair.gap ?? Infinity, frame.proximityPoints[8 * i + 3]!)));
+  addRuns("penetrations", frame.penetrations, 4, 2, (pair, i) => deepen(pair, frame.penetrationPoints[8 * i + 3]!));
+  for (let i = 0; i < frame.curves.length; i += 8) {
+    const pair = pairs.get([frame.curves[i]!, frame.curves[i + 1]!].sort((one, other) => one - other).join(" "));
+    if (pair) deepen(pair, frame.curvePoints[i + 3]!);
+  }
+  return [...pairs.values()].sort((one, other) => one.a - other.a || one.b - other.b);
+}
+
+/** The middle of the points of a single contact; null when it has no points. */
+export function pointOf(frame: FrameMessage, kind: Run["kind"], place: number): number[] | null {
+  const mean = (data: Float32Array, starts: number[]) => [0, 1, 2].map((axis) => starts.reduce((sum, from) => sum + data[from + axis]!, 0) / starts.length);
+  if (kind === "proximity") return mean(frame.proximityPoints, [8 * place, 8 * place + 4]);
+  if (kind === "penetrations") return mean(frame.penetrationPoints, [8 * place]);
+  if (kind === "impacts") return mean(frame.impactPoints, [8 * place]);
+  const [count, first] = [frame.contacts[STRIDE * place + 5]!, frame.contacts[STRIDE * place + 6]!];
+  return count > 0 ? mean(frame.contactPoints, Array.from({ length: count }, (_, k) => 8 * (first + k))) : null;
+}
+
+/** Pairs of the newest step that were not there in the step before that the page received. */
+export class Beginnings {
+  private step = "";
+  private before = new Set<string>();
+  private now = new Set<string>();
+
+  /** Whether each pair began. A frame of the same step, with other layers, gives the same answer. */
+  of(text: { generation: number; step: number }, pairs: TouchingPair[]): (pair: TouchingPair) => boolean {
+    const step = `${text.generation} ${text.step}`;
+    const key = (pair: TouchingPair) => `${pair.a} ${pair.b} ${isTouching(pair) ? "touching" : isHit(pair) ? "hit" : "near"}`;
+    if (step !== this.step) this.before = this.now;
+    this.step = step;
+    this.now = new Set(pairs.map(key));
+    return (pair) => !this.before.has(key(pair));
+  }
 }

@@ -93,11 +93,13 @@ interface ModelEvents {
   tool: Tool;
   explanation: null;
   history: null;
+  /** An object was pulled. */
+  pulled: null;
 }
 
 const LIVE_ROWS = 4000;
 
-/** Rows of numbers, one per frame: all frames of a recording, the received frames of a simulation. */
+/** Rows of numbers: one per frame of a recording, one per step of a simulation, of the last steps. */
 export class History {
   names: string[] = [];
   columns: number[][] = [];
@@ -111,9 +113,14 @@ export class History {
     this.events = noEvents();
   }
 
-  push(frame: number, row: ArrayLike<number>): void {
+  get last(): number {
+    return this.frames[this.frames.length - 1] ?? -1;
+  }
+
+  push(frame: number, time: number, statistics: ArrayLike<number>): void {
     this.frames.push(frame);
-    for (let i = 0; i < this.columns.length; ++i) this.columns[i]!.push(row[i] ?? NaN);
+    this.columns[0]!.push(time);
+    for (let i = 1; i < this.columns.length; ++i) this.columns[i]!.push(statistics[i - 1] ?? NaN);
     if (this.frames.length <= LIVE_ROWS) return;
     const surplus = LIVE_ROWS / 4;  // remove many rows at once, so that the cost per frame is small
     this.frames.splice(0, surplus);
@@ -156,13 +163,14 @@ export class Model extends Emitter<ModelEvents> {
   nodes: NodeChoice = { objects: null, level: LEAVES };
   throughSurfaces = true;
   pointSize = 5;
-  normalLength = 0.015;  // relative to the size of the scene
+  normalLength = 24;  // in CSS pixels
 
   tool: Tool = "select";
   selection: Selection | null = null;
   contact: ContactKey | null = null;
   explained: { object: number; triangle: number }[] = [];
   explanation: Explanation | null = null;
+  wasPulled = false;  // in this run
 
   takeScene(message: SceneMessage): void {
     const before = this.scene;
@@ -197,7 +205,11 @@ export class Model extends Emitter<ModelEvents> {
     this.contact = null;
     if (this.nodes.objects?.some((object) => object >= this.objects.length)) this.nodes = { objects: null, level: LEAVES };
     const names = message.text.source === "recording" ? message.text.series : ["time", ...message.text.statistics];
-    this.history.reset(names);
+    const goesOn = before?.title === message.text.title && before.run === message.text.run && names.join() === this.history.names.join();
+    if (!goesOn) {
+      this.history.reset(names);
+      this.wasPulled = false;
+    }
     this.emit("scene", message.text);
     this.emit("explanation", null);
   }
@@ -232,17 +244,29 @@ export class Model extends Emitter<ModelEvents> {
     this.emit("history", null);
   }
 
-  private remember(message: FrameMessage): void {
-    const { step, time } = message.text;
-    const frames = this.history.frames;
-    if (frames.length > 0 && frames[frames.length - 1]! >= step) return;  // the same step again, with other layers
-    this.history.push(step, [time, ...message.statistics]);
+  /** Adds the steps since the last frame, with the events of all of them at this frame. */
+  private remember({ text: { step, time }, steps, events }: FrameMessage): void {
+    const { history } = this;
+    if (step === history.last) return;  // the same step again, with other layers or options
+    if (step < history.last) history.reset(history.names);  // another program
+    const width = history.names.length - 1;
+    const count = steps.length / width;
+    for (let i = 0; i < count; ++i) {
+      const at = step - (count - 1 - i);
+      if (at > history.last) history.push(at, time - (step - at) * this.scene!.time_step, steps.subarray(i * width, (i + 1) * width));
+    }
     for (const kind of EVENT_KINDS)
       for (const side of ["begin", "end"] as const) {
-        const data = message.events[kind][side];
-        for (let i = 0; i < data.length; i += 2) this.history.events[kind][side].push({ frame: step, a: data[i]!, b: data[i + 1]! });
+        const data = events[kind][side];
+        for (let i = 0; i < data.length; i += 2) history.events[kind][side].push({ frame: step, a: data[i]!, b: data[i + 1]! });
       }
     this.emit("history", null);
+  }
+
+  /** Whether time changes anything. */
+  get moves(): boolean {
+    const { scene } = this;
+    return scene !== null && (scene.frames === null ? scene.objects.some(({ body, waves, rigid }) => body || waves || rigid) : scene.frames > 1);
   }
 
   can(command: string): boolean {
@@ -266,6 +290,11 @@ export class Model extends Emitter<ModelEvents> {
     this.explained = [];
     this.explanation = null;
     this.select(null);
+  }
+
+  setPulled(): void {
+    this.wasPulled = true;
+    this.emit("pulled", null);
   }
 
   setTool(tool: Tool): void {

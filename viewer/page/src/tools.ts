@@ -20,6 +20,8 @@ interface Grip {
 }
 
 export class Tools {
+  /** Called after a click that selects something in the view. */
+  onPick: () => void = () => {};
   private grip: Grip | null = null;
   private pressed: { x: number; y: number } | null = null;
 
@@ -76,10 +78,11 @@ export class Tools {
     const place = this.view.contactAt(x, y);
     if (frame && place >= 0) {
       this.model.selectContact(keyAt(frame, place));
-      return;
+      return this.onPick();
     }
     const hit = this.view.pickAt(x, y);
     this.model.select(hit ? { object: hit.object, triangle: hit.triangle, vertex: hit.vertex } : null);
+    if (hit) this.onPick();
   }
 
   private pickForExplanation(x: number, y: number): void {
@@ -140,6 +143,7 @@ export class Tools {
     if (!this.grip?.moved) return;
     this.grip.moved = false;
     this.client.send({ do: "drag", to: this.grip.to });
+    if (!this.model.wasPulled) this.model.setPulled();
   }
 
   release(): void {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { contactCount, findContact, involves, keyAt, kindAt, pointsAt, sidesOf } from "../src/contacts";
+import { Beginnings, contactCount, findContact, isTouching, keyAt, kindAt, pairsOf, pointOf, pointsAt, sidesOf } from "../src/contacts";
 import { countsOf, readMessage, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
 import { floats, FRAME, KIND, message, sceneMessage, text, words, type Section } from "./build_message";
 
@@ -15,7 +15,6 @@ test("intersections are found again by what touches", () => {
   assert.equal(findContact(frame, [0, 0, 1, 2]), -1);
   assert.deepEqual(sidesOf(keyAt(frame, 1), counts.kinds), [{ object: 0, elements: [0], isFace: true }, { object: 1, elements: [1], isFace: true }]);
   assert.deepEqual([pointsAt(frame, 1).first, pointsAt(frame, 1).count], [2, 1]);
-  assert.deepEqual([involves(frame, 0, 1), involves(frame, 0, 2)], [true, false]);
 });
 
 test("impacts of edges that share a vertex are told apart", () => {
@@ -25,7 +24,6 @@ test("impacts of edges that share a vertex are told apart", () => {
   assert.deepEqual(sidesOf(keyAt(frame, 1), counts.kinds)[0], { object: 0, elements: [0, 2], isFace: false });
   assert.deepEqual(sidesOf(keyAt(frame, 2), counts.kinds)[1], { object: 1, elements: [1], isFace: true });
   assert.deepEqual(sidesOf(keyAt(frame, 3), counts.kinds)[0], { object: 0, elements: [0], isFace: true });
-  assert.ok(involves(frame, 3, 1));
 });
 
 test("impacts of rods and particles have vertices and edges", () => {
@@ -35,4 +33,31 @@ test("impacts of rods and particles have vertices and edges", () => {
   assert.deepEqual(sidesOf(keyAt(frame, 1), counts.kinds).map(({ elements }) => elements), [[0, 1], [3]]);
   assert.deepEqual(sidesOf(keyAt(frame, 2), counts.kinds).map(({ elements }) => elements), [[1], [2]]);
   assert.deepEqual([0, 1, 2].map((place) => kindAt(frame, place, counts.kinds)), ["vertex–edge", "edge–vertex", "vertex–vertex"]);
+});
+
+test("what touches is gathered by pairs of objects", () => {
+  const frame = frameOf(
+    words(34, 8, [0, 0, 1, 0, 1, 2, 0, 0, 0, 0, 1, 1, 0, 1, 2, 0, 1, 0, 1, 1, 0, 0, 0, 0]), floats(35, 8, [0, 0, 0, 0, 0, 0, 0, 0, 2, 4, 6, 0, 0, 0, 0, 0, 9, 9, 9, 0, 0, 0, 0, 0]),
+    words(54, 2, [0, 0, 0, 1, 0, 1]), floats(55, 8, [0, 0, 0, 0.5, 1, 0, 0, 1, 0, 0, 0, 0.3, 0, 0, 0, 1, 0, 0, 0, 0.2, 0, 2, 0, 1]),
+    words(56, 4, [1, 3, 0, 0]), floats(57, 8, [3, 3, 3, 0.25, 0, 0, 0, 0]),
+  );
+  const pairs = pairsOf(frame);
+  assert.deepEqual(pairs.map(({ a, b, count, gap, depth }) => [a, b, count, gap && Math.round(10 * gap) / 10, depth]), [[0, 0, 1, 0.5, null], [0, 1, 5, 0.2, 0.25], [1, 1, 1, null, null]]);
+  assert.deepEqual(pairs[1]!.runs, [{ kind: "contacts", first: 0, count: 2 }, { kind: "proximity", first: 1, count: 2 }, { kind: "penetrations", first: 0, count: 1 }]);
+  assert.deepEqual(pairs.map(isTouching), [false, true, true]);
+  assert.deepEqual(pointOf(frame, "contacts", 0), [1, 2, 3]);
+  assert.deepEqual(pointOf(frame, "proximity", 2), [0, 1, 0]);
+  assert.equal(pointOf(frame, "contacts", 2), null);
+});
+
+test("a pair begins once, also when a frame comes again with other layers", () => {
+  const frame = (step: number, others: number[]) =>
+    readMessage(message(KIND.frame, text({ ...FRAME, step }), words(34, 8, others.flatMap((b) => [0, 0, b, 0, 0, 0, 0, 0]))), counts) as FrameMessage;
+  const beginnings = new Beginnings();
+  const began = (of: FrameMessage) => pairsOf(of).map(beginnings.of(of.text, pairsOf(of)));
+  assert.deepEqual(began(frame(1, [1])), [true]);
+  assert.deepEqual(began(frame(1, [1])), [true]);
+  assert.deepEqual(began(frame(2, [0, 1])), [true, false]);
+  assert.deepEqual(began(frame(3, [])), []);
+  assert.deepEqual(began(frame(4, [1])), [true]);
 });

@@ -1,91 +1,213 @@
-/** A table of all contacts of the frame. */
-import { contactCount, findContact, involves, keyAt, kindAt, sidesOf } from "../contacts";
+/** What touches what: a table of pairs of objects, each of which opens to its single contacts. */
+import { findContact, hasImpacts, isHit, isTouching, keyAt, kindAt, pairsOf, pointOf, sidesOf, type Run, type TouchingPair } from "../contacts";
 import type { Model } from "../model";
 import { h, readable } from "./dom";
 import { makeRow, RowWindow, type Row } from "./row_window";
 
 const ROW_HEIGHT = 24;
+const rounded = (value: number): string => String(Number(value.toPrecision(3)));
+
+interface Single {
+  kind: Run["kind"];
+  place: number;
+}
 
 export class ContactTable {
   readonly element: HTMLElement;
   private readonly summary = h("p", { class: "hint", "aria-live": "off" });
   private readonly window: RowWindow<Row>;
-  private readonly only = h("input", { type: "checkbox" });
-  /** Indices of the listed contacts; null for all. */
-  private listed: number[] | null = null;
+  private readonly filter = h("input", { type: "search", placeholder: "Filter by name", "aria-label": "Filter contacts by name", oninput: () => this.update() });
+  private listed: TouchingPair[] = [];
+  /** The first row of each listed pair, and the number of rows. */
+  private starts: number[] = [0];
+  private readonly open = new Set<string>();
+  /** The chosen pair and the number of the single contact in it, −1 for the pair itself. */
+  private chosen: { pair: string; single: number } | null = null;
 
-  constructor(private readonly model: Model, private readonly fly: () => void) {
+  constructor(private readonly model: Model, private readonly flyTo: (point: number[], reach: number) => void) {
     this.window = new RowWindow(
       { class: "table-view", role: "grid", "aria-label": "Contacts", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
-      h("div", { class: "rows" }), ROW_HEIGHT, () => makeRow(5, (index) => this.choose(index), (row, cells, index) => this.showRow(row, cells, index)),
+      h("div", { class: "rows" }), ROW_HEIGHT, () => makeRow(4, (index) => this.press(index), (row, cells, index) => this.showRow(row, cells, index)),
     );
-    this.only.addEventListener("change", () => this.update());
-    const names = ["object a", "", "object b", "", "kind"].map((name) => h("span", {}, name));
+    const heads: [string, string][] = [
+      ["object a", ""], ["object b", ""], ["contacts", "Contacts and near pairs of the two objects"],
+      ["gap or depth", "The smallest gap, the largest depth, or the time of the first hit as a part of the step"],
+    ];
     this.element = h(
-      "div", { class: "contacts" },
-      h("div", { class: "table-top" }, this.summary, h("label", { title: "Only contacts of the selected object" }, this.only, "Selected object")),
-      h("div", { class: "row head", "aria-hidden": "true" }, ...names),
+      "div", { class: "contacts pairs" },
+      h("div", { class: "table-top" }, this.filter, this.summary),
+      h("div", { class: "row head", "aria-hidden": "true" }, ...heads.map(([name, title]) => h("span", { title }, name))),
       this.window.element,
     );
     model.on("frame", () => this.update());
-    model.on("scene", () => this.update());
-    model.on("selection", () => (this.only.checked ? this.update() : this.window.draw()));
+    model.on("scene", () => {
+      this.open.clear();
+      this.chosen = null;
+      this.update();
+    });
+    model.on("selection", () => this.window.draw());
   }
 
-  private get count(): number {
-    const { frame } = this.model;
-    return this.listed ? this.listed.length : frame ? contactCount(frame) : 0;
+  private nameOf(object: number): string {
+    return this.model.objects[object]!.name;
   }
 
   private update(): void {
-    const { frame, selection } = this.model;
-    this.listed = null;
-    if (frame && this.only.checked && selection) {
-      this.listed = [];
-      for (let place = 0; place < contactCount(frame); ++place) if (involves(frame, place, selection.object)) this.listed.push(place);
-    }
-    const near = frame && frame.proximityPairs.length > 0 ? `${readable(frame.proximityPairs.length / 2)} proximity pairs · ` : "";
-    const text = frame ? `${readable(this.count)} contacts · ${near}${readable(frame.objectPairs.length / 2)} object pairs` : "";
+    const { frame } = this.model;
+    const all = frame ? pairsOf(frame) : [];
+    const wanted = this.filter.value.trim().toLowerCase();
+    this.listed = wanted === "" ? all : all.filter(({ a, b }) => [a, b].some((object) => this.nameOf(object).toLowerCase().includes(wanted)));
+    this.starts = [0];
+    for (const pair of this.listed) this.starts.push(this.starts.at(-1)! + 1 + (this.open.has(keyOf(pair)) ? pair.count : 0));
+    const pairs = `${readable(all.length)} ${all.length === 1 ? "pair" : "pairs"}`;
+    const text = wanted === "" ? pairs : `${readable(this.listed.length)} of ${pairs}`;
     if (this.summary.textContent !== text) this.summary.textContent = text;
     this.window.element.setAttribute("aria-rowcount", String(this.count));
     this.window.setCount(this.count);
   }
 
+  private get count(): number {
+    return this.starts.at(-1)!;
+  }
+
+  /** The pair of a row, and the number of the single contact in it; −1 for the row of the pair. */
+  private at(row: number): { pair: TouchingPair; single: number } {
+    let [low, high] = [0, this.listed.length - 1];
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.starts[middle]! <= row) low = middle;
+      else high = middle - 1;
+    }
+    return { pair: this.listed[low]!, single: row - this.starts[low]! - 1 };
+  }
+
   private showRow(row: HTMLElement, cells: HTMLElement[], index: number): void {
-    const frame = this.model.frame!;
-    const place = this.listed ? this.listed[index]! : index;
-    const key = keyAt(frame, place);
-    const { kinds } = this.model.scene!;
-    const sides = sidesOf(key, kinds).flatMap(({ object, elements }) => [this.model.objects[object]!.name, elements.join("–")]);
-    [...sides, kindAt(frame, place, kinds)].forEach((text, i) => {
+    const { pair, single } = this.at(index);
+    const isPair = single < 0;
+    const isOpen = this.open.has(keyOf(pair));
+    const texts = isPair
+      ? [`${isOpen ? "▾" : "▸"} ${this.nameOf(pair.a)}`, pair.a === pair.b ? "itself" : this.nameOf(pair.b), readable(pair.count), measureOf(pair)]
+      : this.textsOf(singleOf(pair, single));
+    texts.forEach((text, i) => {
       if (cells[i]!.textContent !== text) cells[i]!.textContent = text;
     });
+    row.classList.toggle("single", !isPair);
     row.setAttribute("aria-rowindex", String(index + 1));
-    const { contact } = this.model;
-    const selected = contact !== null && contact.length === key.length && contact.every((id, i) => id === key[i]);
-    row.setAttribute("aria-selected", String(selected));
+    row.setAttribute("aria-level", isPair ? "1" : "2");
+    if (isPair) row.setAttribute("aria-expanded", String(isOpen));
+    else row.removeAttribute("aria-expanded");
+    row.setAttribute("aria-selected", String(index === this.chosenRow()));
+  }
+
+  /** What touches in a single contact: an element of each side, the kind, and a number. */
+  private textsOf({ kind, place }: Single): string[] {
+    const frame = this.model.frame!;
+    const { kinds } = this.model.scene!;
+    if (kind === "proximity") return ["", "", "near", `gap ${rounded(frame.proximityPoints[8 * place + 3]!)}`];
+    if (kind === "penetrations") {
+      const [, vertex, , triangle] = frame.penetrations.subarray(4 * place, 4 * place + 4);
+      return [`vertex ${vertex}`, `face ${triangle}`, "inside", `depth ${rounded(frame.penetrationPoints[8 * place + 3]!)}`];
+    }
+    if (kind === "contacts" && hasImpacts(frame)) {
+      const [, one, , other, word] = frame.contacts.subarray(8 * place, 8 * place + 5);
+      return [`face ${one}`, `face ${other}`, kinds.contact[word!]!, ""];
+    }
+    const [a, b] = sidesOf(keyAt(frame, place), kinds).map(({ elements, isFace }) => `${isFace ? "face" : elements.length > 1 ? "edge" : "vertex"} ${elements.join("–")}`);
+    return [a!, b!, kindAt(frame, place, kinds), kind === "impacts" ? `at ${rounded(frame.impactPoints[8 * place + 3]!)}` : ""];
+  }
+
+  /** A click on a pair shows it and opens it, or closes it again. */
+  private press(index: number): void {
+    if (index >= this.count) return;  // it has disappeared meanwhile
+    const { pair, single } = this.at(index);
+    if (single < 0 && this.open.delete(keyOf(pair))) return this.update();
+    if (single < 0) this.open.add(keyOf(pair));
+    this.choose(index);
+    this.update();
   }
 
   private choose(index: number): void {
-    if (index >= this.count) return;  // it has disappeared meanwhile
-    const place = this.listed ? this.listed[index]! : index;
-    this.model.selectContact(keyAt(this.model.frame!, place));
+    const { pair, single } = this.at(index);
+    const frame = this.model.frame!;
+    this.chosen = { pair: keyOf(pair), single };
     this.window.reveal(index);
-    this.fly();
+    const from = single < 0 ? null : singleOf(pair, single);
+    const isListed = from !== null && from.kind === (hasImpacts(frame) ? "impacts" : "contacts");
+    if (isListed) this.model.selectContact(keyAt(frame, from.place));
+    else this.model.select({ object: pair.a, triangle: null, vertex: null });
+    const points = from ? [pointOf(frame, from.kind, from.place)] : pair.runs.flatMap(({ kind, first, count }) => Array.from({ length: count }, (_, i) => pointOf(frame, kind, first + i)));
+    this.showPoints(points.filter((point) => point !== null));
+    this.window.draw();
+  }
+
+  private showPoints(points: number[][]): void {
+    if (points.length === 0) return;
+    const [lower, upper] = [[0, 1, 2].map((axis) => Math.min(...ends(points, axis))), [0, 1, 2].map((axis) => Math.max(...ends(points, axis)))];
+    const middle = lower.map((x, axis) => (x + upper[axis]!) / 2);
+    this.flyTo(middle, Math.hypot(...upper.map((x, axis) => x - lower[axis]!)) / 2);
   }
 
   private key(event: KeyboardEvent): void {
-    const next = this.window.rowAfter(event.key, this.chosenRow());
-    if (next === null) return;
+    const now = this.chosenRow();
+    const pair = now >= 0 ? this.at(now).pair : null;
+    if (pair && (event.key === "ArrowRight" || event.key === "ArrowLeft" || event.key === "Enter")) {
+      const isOpen = this.open.has(keyOf(pair));
+      if (isOpen && event.key !== "ArrowRight") this.open.delete(keyOf(pair));
+      else if (!isOpen && event.key !== "ArrowLeft") this.open.add(keyOf(pair));
+      if (!this.open.has(keyOf(pair))) this.chosen = { pair: keyOf(pair), single: -1 };
+      this.update();
+    } else {
+      const next = this.window.rowAfter(event.key, now);
+      if (next === null) return;
+      this.choose(next);
+    }
     event.preventDefault();
     event.stopPropagation();
-    this.choose(next);
   }
 
+  /** The chosen row, or that of the selected contact; −1 when it is not listed. */
   private chosenRow(): number {
+    const { chosen } = this;
     const { contact, frame } = this.model;
-    if (!contact || !frame) return -1;
-    const place = findContact(frame, contact);
-    return this.listed ? this.listed.indexOf(place) : place;
+    if (!chosen || !frame) return -1;
+    const at = this.listed.findIndex((pair) => keyOf(pair) === chosen.pair);
+    if (at < 0) return -1;
+    if (chosen.single < 0 || !this.open.has(chosen.pair)) return this.starts[at]!;
+    const pair = this.listed[at]!;
+    const place = contact ? findContact(frame, contact) : -1;  // contacts keep their elements from step to step, not their place
+    const single = place >= 0 ? numberOf(pair, hasImpacts(frame) ? "impacts" : "contacts", place) : chosen.single;
+    return single < pair.count ? this.starts[at]! + 1 + single : this.starts[at]!;
   }
+}
+
+const keyOf = ({ a, b }: TouchingPair): string => `${a} ${b}`;
+
+/** At most this many points decide how much is shown of a pair. */
+const MOST_POINTS = 10_000;
+const ends = (points: number[][], axis: number): number[] => points.slice(0, MOST_POINTS).map((point) => point[axis]!);
+
+function measureOf(pair: TouchingPair): string {
+  if (pair.depth !== null) return `depth ${rounded(pair.depth)}`;
+  if (isTouching(pair)) return "intersect";
+  if (isHit(pair)) return `hit at ${rounded(pair.time!)}`;
+  return `gap ${rounded(pair.gap!)}`;
+}
+
+function singleOf(pair: TouchingPair, number: number): Single {
+  let left = number;
+  for (const { kind, first, count } of pair.runs) {
+    if (left < count) return { kind, place: first + left };
+    left -= count;
+  }
+  throw new Error("a pair has fewer contacts");
+}
+
+/** The number of a single contact in its pair; −1 when it is in another one. */
+function numberOf(pair: TouchingPair, kind: Run["kind"], place: number): number {
+  let before = 0;
+  for (const run of pair.runs) {
+    if (run.kind === kind && place >= run.first && place < run.first + run.count) return before + place - run.first;
+    before += run.count;
+  }
+  return -1;
 }

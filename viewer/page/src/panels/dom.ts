@@ -31,15 +31,15 @@ const ICONS: Record<string, string> = {
   reset: '<path d="M3 8a5 5 0 1 0 1.6-3.6L3 6M3 2.6V6h3.4"/>',
   frame: '<path d="M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10"/><circle cx="8" cy="8" r="1.8"/>',
   camera: '<path d="M2 5h3l1.2-1.8h3.6L11 5h3v8H2z"/><circle cx="8" cy="8.8" r="2.2"/>',
-  frames: '<path d="M2.5 3.5h11v9h-11zM5.2 3.5v9M10.8 3.5v9M2.5 8h11"/>',
-  film: '<circle cx="8" cy="8" r="5.5"/><circle cx="8" cy="8" r="2.2" fill="currentColor"/>',
-  theme: '<circle cx="8" cy="8" r="5.5"/><path d="M8 2.5a5.5 5.5 0 0 1 0 11z" fill="currentColor"/>',
+  frames: '<path d="M2 6h9v7.5H2zM4 6V4h9v7.5h-2M6 4V2h8.5v7.5H13"/>',
+  film: '<path d="M1.8 4.5h8.4v7H1.8zM10.2 7.2l4-2.4v6.4l-4-2.4" fill="currentColor" fill-opacity=".25"/>',
+  theme: '<path d="M13.2 9.6A5.6 5.6 0 0 1 6.4 2.8a5.6 5.6 0 1 0 6.8 6.8z"/>',
   select: '<path d="M4 2.2l8.3 6.2-3.7.6 2 4-1.7.8-2-4L4.4 12z"/>',
   grab: '<circle cx="8" cy="8" r="2" fill="currentColor"/><path d="M8 1.8v3M8 11.2v3M1.8 8h3M11.2 8h3"/>',
   explain: '<path d="M1.8 12.5L5 4l2 6zM14.2 12.5L11 4 9 10z"/>',
   ortho: '<path d="M3 5.5h7.5V13H3zM5.5 5.5V3H13v7.5h-2.5"/>',
   perspective: '<path d="M2.5 6h7v7.5h-7zM9.5 6l4-2v6.5l-4 3M2.5 6l4-2h7"/>',
-  panels: '<path d="M2 3h12v10H2zM6 3v10M10.5 3v10"/>',
+  panels: '<path d="M2 3h12v10H2z"/><path d="M2 3h4v10H2z" fill="currentColor"/>',
 };
 
 export function icon(name: string): SVGSVGElement {
@@ -79,6 +79,9 @@ export function colourOf(name: string): string {
   probe.remove();
   return color;
 }
+
+/** The size of 1rem, which follows the font size that the user has set in the browser. */
+export const remPixels = (): number => parseFloat(getComputedStyle(document.documentElement).fontSize);
 
 /** Formats a number for display. */
 export function readable(x: number): string {

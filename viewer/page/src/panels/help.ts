@@ -2,7 +2,7 @@ import { h, sheet } from "./dom";
 
 const GROUPS: [string, [string, string][]][] = [
   ["Play", [
-    ["Space", "play or pause"], ["→ ←", "one step forward; in a recording also back"], ["Home End", "first, last frame"],
+    ["Space", "play or pause, wherever the focus is; Enter presses a button and ticks a box"], ["→ ←", "one step forward; in a recording also back"], ["Home End", "first, last frame"],
     [". ,", "next, previous event"], ["[ ]", "slower, faster"], ["L", "loop a recording"], ["R", "restart with the seed"],
   ]],
   ["Look", [

@@ -57,11 +57,13 @@ function wordsOf(status: Extract<Status, { state: "ended" }>, carriesLibrary: bo
   const { reason, detail } = status;
   switch (reason) {
     case "lost":
-      return { title: "Connection lost", text: "The program has ended or the network has failed. The page shows the last frame.", again: "Reconnect" };
+      return { title: "Connection lost", text: "The program has ended or the network has failed. The page shows the last frame and connects again by itself.", again: "Reconnect now" };
+    case "other-token":
+      return { title: "The program has another address now", text: "It was started again. Open the address that it prints. With supple view --port and --token-file the address stays the same.", again: "Reconnect" };
     case "taken-over":
       return { title: "Open in another page", text: "Another page has taken over this session. Only one page at a time can show a session.", again: "Take it back" };
     case "program-ended":
-      return { title: "The program has ended", text: "Start supple view again, then open the address it prints.", again: "Reconnect" };
+      return { title: "The program has ended", text: "The page shows the last frame. Start supple view again: with the same --port and --token-file the page connects by itself, otherwise open the address it prints.", again: "Reconnect now" };
     case "refused":
       return { title: "The program rejected a command of this page", text: detail || "Page and program may have different versions. Reload the page.", again: "Reconnect" };
     case "failed":

@@ -20,9 +20,11 @@ export class Player {
   private readonly slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Timeline", oninput: () => this.scrub() });
   private readonly marks = h("canvas", { class: "marks", "aria-hidden": "true" });
   private readonly place = h("output", { class: "place", "aria-label": "Place" });
-  private readonly rate = h("output", { class: "rate", "aria-label": "Frames per second", title: "Frames per second received" });
+  private readonly rate = h("output", { class: "rate", "aria-label": "Rate", title: "Frames per second that the page draws, and simulated or recorded seconds per second of the clock" });
   private readonly recordingOnly: HTMLElement[];
   private readonly simulationOnly: HTMLElement[];
+  private readonly always: HTMLElement[];
+  private readonly reset_ = iconButton("reset", "Reset", "R", () => this.reset());
   private wanted: number | null = null;
   private asked: number | null = null;
 
@@ -33,21 +35,22 @@ export class Player {
     const next = iconButton("nextEvent", "Next event", ".", () => this.jump(1));
     const back = h("button", { type: "button", class: "text-button", "aria-label": "Step back", title: "Step back (←)", onclick: () => this.step(-1) }, "−1");
     const forward = h("button", { type: "button", class: "text-button", "aria-label": "Step", title: "Step (→)", onclick: () => this.step(1) }, "+1");
-    const reset = iconButton("reset", "Reset", "R", () => this.reset());
     const track = h("div", { class: "track" }, this.marks, this.slider);
     const seed = h("label", { class: "seed" }, "Seed ", this.seed);
     this.kinds.append(...EVENT_KINDS.map((kind) => h("option", { value: kind }, EVENT_LABELS[kind])));
     this.recordingOnly = [first, last, previous, next, this.kinds, back, this.loop, track];
-    this.simulationOnly = [reset, seed];
+    this.simulationOnly = [this.reset_, seed];
+    this.always = [this.play, forward, this.speeds, this.place, this.rate];
     this.speeds.append(h("option", { value: 0 }, "fastest"), ...SPEEDS.map((speed) => h("option", { value: speed }, `${speed}×`)));
     this.seed.addEventListener("change", () => this.reset());
     this.element = h(
       "footer", { class: "player", "aria-label": "Player", role: "toolbar" },
-      first, previous, back, this.play, forward, next, last, this.kinds, this.loop, reset, seed, this.speeds, track, this.place, this.rate,
+      first, previous, back, this.play, forward, next, last, this.kinds, this.loop, this.reset_, seed, this.speeds, track, this.place, this.rate,
     );
     model.on("scene", () => this.build());
     model.on("frame", (frame) => this.show(frame.text));
     model.on("history", () => this.drawMarks());
+    model.on("pulled", () => this.fit());
     new ResizeObserver(() => this.drawMarks()).observe(track);
   }
 
@@ -58,14 +61,24 @@ export class Player {
   private build(): void {
     const scene = this.model.scene!;
     const isRecording = scene.source === "recording";
-    for (const element of this.recordingOnly) element.hidden = !isRecording;
-    for (const element of this.simulationOnly) element.hidden = isRecording;
+    const { moves } = this.model;
+    for (const element of this.recordingOnly) element.hidden = !isRecording || !moves;
+    for (const element of this.simulationOnly) element.hidden = isRecording || !moves;
+    for (const element of this.always) element.hidden = !moves;
+    this.fit();
     this.speeds.querySelector<HTMLOptionElement>("option[value='0']")!.hidden = isRecording;
     this.slider.max = String(Math.max(0, (scene.frames ?? 1) - 1));
     this.seed.value = scene.seed;
     this.wanted = this.asked = null;
     this.element.classList.toggle("recording", isRecording);
     this.drawMarks();
+  }
+
+  /** Meshes at rest need no player, unless they were pulled: then only a reset brings them back. */
+  private fit(): void {
+    const isAtRest = !this.model.moves;
+    this.element.hidden = isAtRest && !this.model.wasPulled;
+    if (isAtRest) this.reset_.hidden = !this.model.wasPulled;
   }
 
   private show(text: { step: number; time: number; playing: boolean; speed: number; loop?: boolean }): void {
@@ -80,8 +93,10 @@ export class Player {
     this.slider.setAttribute("aria-valuetext", this.place.textContent);
   }
 
-  showRate(rate: number): void {
-    this.rate.textContent = rate > 0 ? `${Math.round(rate)} fps` : "";
+  /** `factor`: simulated seconds per second of the clock; null when it is not known. */
+  showRate(rate: number, factor: number | null): void {
+    const pace = factor === null ? "" : ` · ${factor.toPrecision(2)}× real time`;
+    this.rate.textContent = rate > 0 ? `${Math.round(rate)} fps${pace}` : "";
   }
 
   private setPlaying(on: boolean): void {
@@ -96,6 +111,7 @@ export class Player {
   }
 
   togglePlay(): void {
+    if (!this.model.moves) return;
     this.client.send({ do: this.playing ? "pause" : "play" });
     this.setPlaying(!this.playing);
   }
@@ -133,7 +149,11 @@ export class Player {
   reset(): void {
     if (!this.model.can("reset")) return;
     const seed = this.seed.value.trim();
-    this.client.send(seed ? { do: "reset", seed } : { do: "reset" });
+    this.seed.setCustomValidity("");
+    this.client.ask(seed ? { do: "reset", seed } : { do: "reset" }).catch((error: Error) => {
+      this.seed.setCustomValidity(`${error.message.replace(/^reset: /, "")}. The seed stays ${this.model.scene?.seed}.`);
+      this.seed.reportValidity();
+    });
   }
 
   seek(frame: number): void {

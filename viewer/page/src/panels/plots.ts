@@ -4,7 +4,7 @@ import "uplot/dist/uPlot.min.css";
 import { OKABE_ITO } from "../colours";
 import { EVENT_LABELS, type Model } from "../model";
 import { EVENT_KINDS, type EventKind } from "../protocol/messages";
-import { colourOf, h, readable } from "./dom";
+import { colourOf, h, readable, remPixels } from "./dom";
 
 const HEIGHT = 132;
 const REDRAW_MILLISECONDS = 150;
@@ -61,7 +61,7 @@ export class Plots {
     const ink = colourOf("--ink-soft");
     const stroke = (name: string, i: number) => (name === "total_seconds" ? colourOf("--ink") : LINES[i % LINES.length]!);
     const grid = colourOf("--line");
-    const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: "11px system-ui" };
+    const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: `${remPixels() * 0.75}px system-ui` };
     const holder = h("figure", { "aria-label": title }, h("figcaption", {}, title));
     const options: uPlot.Options = {
       width: Math.max(120, this.element.clientWidth),
@@ -69,7 +69,7 @@ export class Plots {
       scales: { x: { time: false } },
       legend: { live: false },
       cursor: { points: { show: false }, drag: { x: false, y: false } },
-      axes: [{ ...axis, size: 26 }, { ...axis, size: 52 }],
+      axes: [{ ...axis, size: 1.75 * remPixels() }, { ...axis, size: 3.5 * remPixels() }],
       series: [{ label: "frame" }, ...columns.map((name, i) => ({ label: labelOf(name), stroke: stroke(name, i), width: 1.5, points: { show: false } }))],
       hooks: { draw: [(plot) => this.drawCursor(plot)] },
     };
@@ -115,7 +115,9 @@ export class Plots {
     for (const { columns, scale, plot } of this.plots) {
       const lines = columns.map((name) => {
         const column = this.model.history.column(name)!;
-        return scale === 1 ? column : column.map((value) => value * scale);
+        // The total of the library is that of the detection; the plot also has the time of the motion.
+        const motion = name === "total_seconds" ? this.model.history.column("motion_seconds") : null;
+        return scale === 1 ? column : column.map((value, i) => (value + (motion?.[i] ?? 0)) * scale);
       });
       plot.setData([frames, ...lines]);
     }

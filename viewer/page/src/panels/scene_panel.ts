@@ -1,8 +1,10 @@
 /** The objects of the scene and the layers drawn over them. */
-import { levelColour, LEVELS, OKABE_ITO } from "../colours";
+import { GAPS, levelColour, LEVELS, MARKS } from "../colours";
 import type { Layer, Model } from "../model";
+import type { FrameMessage } from "../protocol/messages";
 import { h, readable } from "./dom";
 import { ObjectList } from "./object_list";
+import { TouchLine } from "./touch_line";
 
 interface LayerRow {
   layer: Layer;
@@ -10,29 +12,39 @@ interface LayerRow {
   key: string;
   colour: string;
   hint: string;
+  /** Only contacts of these kinds fill the layer. */
+  kinds?: string[];
+  /** The number of elements in a frame. */
+  has?: (frame: FrameMessage) => number;
 }
 
+const INTERSECTIONS = ["intersection", "penetration"];
+const CONTACTS = [...INTERSECTIONS, "continuous"];
+const contactsIn = ({ contacts, impacts }: FrameMessage): number => contacts.length + impacts.length;
+const pointsIn = ({ contactPoints, impactPoints }: FrameMessage): number => contactPoints.length + impactPoints.length;
+
+/** What is drawn, then marks of contacts, then the stages of the search. */
 export const LAYER_ROWS: LayerRow[] = [
   { layer: "surface", label: "Surfaces", key: "S", colour: "", hint: "The objects" },
   { layer: "wireframe", label: "Wireframe", key: "X", colour: "", hint: "The edges of all triangles" },
-  { layer: "regions", label: "Scene octree", key: "N", colour: "levels", hint: "Regions that the broad phase used in this frame, coloured by level; none unless the octree ran" },
-  { layer: "octree", label: "Object octrees", key: "B", colour: "levels", hint: "Cells of the objects' octrees, coloured by level" },
+  { layer: "triangles", label: "Intersecting triangles", key: "I", colour: MARKS.contact, hint: "Triangles that have a contact", kinds: CONTACTS, has: contactsIn },
+  { layer: "points", label: "Contact points", key: "D", colour: MARKS.contact, hint: "Extreme points of the intersection of two triangles", kinds: CONTACTS, has: pointsIn },
+  { layer: "normals", label: "Contact normals", key: "Y", colour: MARKS.normal, hint: "The normal at each contact point", kinds: CONTACTS, has: pointsIn },
+  { layer: "segments", label: "Contact segments", key: "U", colour: MARKS.contact, hint: "Segments and outlines in which pairs of triangles intersect", kinds: INTERSECTIONS, has: ({ contactPoints }) => contactPoints.length },
+  { layer: "proximity", label: "Proximity pairs", key: "M", colour: "gaps", hint: "Closest points within the margins. Rings are coloured by distance: brown up to a quarter of the margins, then olive, green and blue", kinds: ["proximity"], has: ({ proximityPairs }) => proximityPairs.length },
+  { layer: "depths", label: "Depths", key: "E", colour: MARKS.depth, hint: "From each vertex inside a solid object to the closest point of its surface", kinds: ["penetration"], has: ({ penetrations }) => penetrations.length },
+  { layer: "curves", label: "Curves", key: "A", colour: MARKS.curve, hint: "The triangles at the vertices that each curve of intersections encloses, and an arrow along the normal, as far as the first object must move to pass the second", kinds: ["penetration"], has: ({ curves }) => curves.length },
+  { layer: "pairs", label: "Object pairs", key: "P", colour: MARKS.pair, hint: "Objects whose volumes overlap" },
+  { layer: "candidates", label: "Candidate pairs", key: "C", colour: MARKS.candidate, hint: "Pairs of triangles that the exact stage decides" },
   { layer: "nodes", label: "Colliding nodes", key: "K", colour: "levels", hint: "Nodes of two octrees whose volumes overlap in the narrow phase: the leaves, or a level chosen under Narrow phase" },
-  { layer: "pairs", label: "Object pairs", key: "P", colour: OKABE_ITO.green, hint: "Objects whose volumes overlap" },
-  { layer: "candidates", label: "Candidate pairs", key: "C", colour: OKABE_ITO.blue, hint: "Pairs of triangles that the exact stage decides" },
-  { layer: "triangles", label: "Intersecting triangles", key: "I", colour: OKABE_ITO.vermillion, hint: "Triangles that have a contact" },
-  { layer: "points", label: "Contact points", key: "D", colour: OKABE_ITO.yellow, hint: "Extreme points of the intersection of two triangles" },
-  { layer: "normals", label: "Contact normals", key: "Y", colour: OKABE_ITO.sky, hint: "The normal at each contact point" },
-  { layer: "segments", label: "Contact segments", key: "U", colour: "ink", hint: "Segments and outlines in which pairs of triangles intersect" },
-  { layer: "proximity", label: "Proximity pairs", key: "M", colour: "proximity", hint: "Closest points within the margins, coloured by distance: vermillion up to a quarter of the margins, then orange, green and blue" },
-  { layer: "depths", label: "Depths", key: "E", colour: OKABE_ITO.purple, hint: "From each vertex inside a solid object to the closest point of its surface" },
-  { layer: "curves", label: "Curves", key: "A", colour: OKABE_ITO.green, hint: "The triangles at the vertices that each curve of intersections encloses, and an arrow along the normal, as far as the first object must move to pass the second" },
-  { layer: "vertices", label: "Colliding vertices", key: "J", colour: OKABE_ITO.purple, hint: "The output of the paper: vertices of colliding octree nodes" },
+  { layer: "octree", label: "Object octrees", key: "B", colour: "levels", hint: "Cells of the objects' octrees, coloured by level" },
+  { layer: "regions", label: "Scene octree", key: "N", colour: "levels", hint: "Regions that the broad phase used in this frame, coloured by level; none unless the octree ran", has: ({ text }) => (text.broad_phase_method === "octree" ? 1 : 0) },
+  { layer: "vertices", label: "Colliding vertices", key: "J", colour: MARKS.vertex, hint: "The output of the paper: vertices of colliding octree nodes" },
 ];
 
 function swatch(colour: string): HTMLElement {
-  if (colour === "proximity") return swatchOf([5, 1, 2, 0].map(levelColour));
-  if (colour !== "levels") return h("span", { class: "swatch", style: colour ? `background:${colour === "ink" ? "var(--ink)" : colour}` : "visibility:hidden" });
+  if (colour === "gaps") return swatchOf(GAPS);
+  if (colour !== "levels") return h("span", { class: "swatch", style: colour ? `background:${colour}` : "visibility:hidden" });
   return swatchOf(LEVELS.slice(0, 4));
 }
 
@@ -45,6 +57,12 @@ export class ScenePanel {
   readonly element: HTMLElement;
   private readonly counts = new Map<Layer, HTMLElement>();
   private readonly boxes = new Map<Layer, HTMLInputElement>();
+  private readonly rows = new Map<Layer, HTMLElement>();
+  private readonly list = h("ul", { class: "layers", "aria-label": "Layers" });
+  private readonly moreList = h("ul", { class: "layers", "aria-label": "More layers" });
+  private readonly more = h("details", { class: "more" }, h("summary", {}, "More layers"), h("p", { class: "hint" }, "This scene has not produced them yet."), this.moreList);
+  /** Layers that have had content since the scene was opened. */
+  private seen = new Set<Layer>();
   private readonly levels = h("select", { "aria-label": "Octree level" });
   private readonly legend = h(
     "div", { class: "legend", hidden: true, title: "Colours of levels; they repeat after the last colour" },
@@ -57,28 +75,54 @@ export class ScenePanel {
     this.element = h(
       "aside",
       { class: "panel left", "aria-label": "Scene" },
+      h("section", {}, new TouchLine(model).element),
       new ObjectList(model, frameObject).element,
-      h("section", {}, h("h2", {}, "Layers"), this.layerList(), this.octreeOptions(), this.legend, this.omitted),
+      h("section", {}, h("h2", {}, "Layers"), this.list, this.more, this.octreeOptions(), this.legend, this.omitted),
     );
+    this.makeRows();
     model.on("scene", () => this.build());
+    model.on("frame", () => this.sortRows());
     model.on("display", () => this.refresh());
   }
 
   private build(): void {
     this.deepest = -1;
     this.fitLevels(0);
+    this.seen = new Set();
+    this.sortRows();
   }
 
-  private layerList(): HTMLElement {
-    const rows = LAYER_ROWS.map(({ layer, label, key, colour, hint }) => {
+  /** Whether the scene fills a layer. Of several kinds of contacts, those that have not occurred yet do not count. */
+  private isProduced({ layer, kinds, has }: LayerRow): boolean {
+    const { frame, scene } = this.model;
+    if (frame && has && has(frame) > 0) this.seen.add(layer);
+    if (!has || this.seen.has(layer)) return true;
+    const asked = scene?.contacts.split(",") ?? [];
+    return kinds !== undefined && asked.length === 1 && kinds.includes(asked[0]!);
+  }
+
+  /** Moves the rows of layers that the scene does not produce to “More layers”. */
+  private sortRows(): void {
+    const lists = { main: [] as HTMLElement[], more: [] as HTMLElement[] };
+    for (const row of LAYER_ROWS) lists[this.isProduced(row) ? "main" : "more"].push(this.rows.get(row.layer)!);
+    if (lists.main.length === this.list.childElementCount && lists.main.every((row, i) => row === this.list.children[i])) return;
+    const focus = document.activeElement;
+    this.list.replaceChildren(...lists.main);
+    this.moreList.replaceChildren(...lists.more);
+    this.more.hidden = lists.more.length === 0;
+    if (focus instanceof HTMLElement && this.element.contains(focus)) focus.focus();  // moving an element takes its focus away
+  }
+
+  private makeRows(): void {
+    for (const { layer, label, key, colour, hint } of LAYER_ROWS) {
       const box = h("input", { type: "checkbox", "aria-label": label, "aria-keyshortcuts": key, onchange: () => this.model.setLayer(layer, box.checked) });
       box.checked = this.model.layers[layer];
       const count = h("span", { class: "count" });
       this.boxes.set(layer, box);
       this.counts.set(layer, count);
-      return h("li", {}, h("label", { title: `${hint} (${key})` }, box, swatch(colour), h("span", { class: "text" }, label), count, h("kbd", {}, key)));
-    });
-    return h("ul", { class: "layers", "aria-label": "Layers" }, ...rows);
+      this.rows.set(layer, h("li", {}, h("label", { title: `${hint} (${key})` }, box, swatch(colour), h("span", { class: "text" }, label), count, h("kbd", {}, key))));
+    }
+    this.sortRows();
   }
 
   private octreeOptions(): HTMLElement {

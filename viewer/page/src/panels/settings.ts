@@ -1,82 +1,70 @@
-/** Settings that restart the session when they change. */
-import GUI, { type Controller } from "lil-gui";
+/** The options of the session, and those of the drawing. */
 import type { Client } from "../client";
 import type { Model } from "../model";
+import type { Setting } from "../protocol/messages";
 import { h } from "./dom";
+import { Field } from "./field";
+
+/** The options that come first; all others are folded. */
+const FIRST = ["bounding_volume", "broad_phase", "contacts", "max_level", "leaf_size"];
 
 export class Settings {
-  readonly element = h("div", { class: "settings" });
-  private gui: GUI | null = null;
-  private values: Record<string, string | number> = {};
+  readonly element: HTMLElement;
+  private readonly detection = h("div");
+  private readonly fields = new Map<string, Field>();
+  private described = "";
 
   constructor(private readonly model: Model, private readonly client: Client) {
-    model.on("scene", () => this.build());
+    this.element = h("div", { class: "settings" }, this.detection, h("h3", {}, "Drawing"), ...this.drawing());
+    model.on("scene", () => this.update());
   }
 
-  private build(): void {
-    const focused = (document.activeElement as HTMLElement | null)?.closest("[data-setting]")?.getAttribute("data-setting");
-    this.gui?.destroy();
-    const gui = new GUI({ container: this.element, title: "Collision detection", width: 1 });
-    this.gui = gui;
-    const { scene } = this.model;
-    if (!scene) return;
-    const { bounding_volume, broad_phase, contacts, max_level, leaf_size, time_step } = scene;
-    this.values = { bounding_volume, broad_phase, contacts, max_level, leaf_size, time_step, objects: scene.objects.length };
-    if (scene.integrator !== null) this.values["integrator"] = scene.integrator;
-    if (this.model.can("set")) {
-      this.choice("bounding_volume", "Bounding volume");
-      this.number("max_level", "Octree levels", 0, 32, 1);
-      this.number("leaf_size", "Triangles per leaf", 1, null, 1);
-      this.choice("broad_phase", "Broad phase");
-      this.choice("contacts", "Contacts");
-      if (scene.source === "simulation") this.ofSimulation();
-    }
-    this.drawing(gui.addFolder("Drawing"));
-    if (focused) this.element.querySelector<HTMLElement>(`[data-setting="${focused}"] :is(input, select)`)?.focus();
+  private update(): void {
+    const scene = this.model.scene!;
+    const described = JSON.stringify(scene.settings);
+    if (described !== this.described) this.build(scene.settings);
+    this.described = described;
+    for (const [key, field] of this.fields) field.update(key === "objects" ? scene.objects.length : (scene as unknown as Record<string, unknown>)[key]);
   }
 
-  private ofSimulation(): void {
-    this.number("objects", "Objects", 1, null, 1);
-    if ("integrator" in this.values) this.choice("integrator", "Integrator");
-    this.number("time_step", "Time step", 1e-6, null, null);
+  private build(settings: Setting[]): void {
+    this.fields.clear();
+    const list = (wanted: (setting: Setting) => boolean) =>
+      settings.filter((setting) => setting.kind !== "cube" && wanted(setting)).map((setting) => {
+        const field = new Field(setting, (value) => this.client.ask({ do: "set", [setting.key]: value }));
+        this.fields.set(setting.key, field);
+        return field.element;
+      });
+    const restarting = list(({ restarts }) => restarts);
+    this.detection.replaceChildren(
+      h("h3", {}, "Collision detection"),
+      ...list(({ key }) => FIRST.includes(key)),
+      h("details", {}, h("summary", {}, "More options"), ...list(({ key, restarts }) => !restarts && !FIRST.includes(key))),
+      ...(restarting.length > 0 ? [h("h3", {}, "Simulation"), h("p", { class: "hint" }, "A change here restarts the simulation."), ...restarting] : []),
+    );
   }
 
-  private choice(name: string, label: string): void {
-    const choices: string[] = [...(this.model.scene?.choices[name] ?? [])];
-    const now = String(this.values[name]);
-    if (!choices.includes(now)) choices.push(now);  // a value of a later version
-    this.tie(this.gui!.add(this.values, name, choices), name, label);
-  }
-
-  /** A slider when both limits are given, else a field. */
-  private number(name: string, label: string, least: number, most: number | null, step: number | null): void {
-    const controller = this.gui!.add(this.values, name).min(least);
-    if (most !== null) controller.max(most);
-    if (step !== null) controller.step(step);
-    this.tie(controller, name, label);
-  }
-
-  private tie(controller: Controller, name: string, label: string): void {
-    controller.name(label);
-    controller.domElement.dataset["setting"] = name;
-    for (const input of controller.domElement.querySelectorAll("input, select")) input.setAttribute("aria-label", label);
-    controller.onFinishChange((value: string | number) => {
-      this.client
-        .ask({ do: "set", [name]: value })
-        .then(() => undefined)
-        .catch((error: Error) => {
-          this.client.emit("notice", error.message);
-          this.build();  // shows the values that still apply
-        });
-    });
-  }
-
-  private drawing(folder: GUI): void {
-    const changed = () => this.model.emit("display", null);
-    folder.add(this.model, "throughSurfaces").name("Marks through surfaces").onChange(changed);
-    folder.add(this.model, "pointSize", 2, 20, 1).name("Point size").onChange(changed);
-    folder.add(this.model, "normalLength", 0.002, 0.1).name("Normal length").onChange(changed);
-    for (const controller of folder.controllers)
-      for (const input of controller.domElement.querySelectorAll("input")) input.setAttribute("aria-label", controller._name);
+  private drawing(): HTMLElement[] {
+    const { model } = this;
+    const changed = () => model.emit("display", null);
+    const through = h("input", { type: "checkbox", id: "through", onchange: () => {
+      model.throughSurfaces = through.checked;
+      changed();
+    } });
+    const slider = (name: "pointSize" | "normalLength", label: string, min: number, max: number, step: number) => {
+      const input = h("input", { type: "range", id: name, min, max, step, oninput: () => {
+        model[name] = input.valueAsNumber;
+        changed();
+      } });
+      model.on("display", () => (input.value = String(model[name])));
+      input.value = String(model[name]);
+      return h("div", { class: "setting" }, h("label", { for: name }, label), input);
+    };
+    model.on("display", () => (through.checked = model.throughSurfaces));
+    through.checked = model.throughSurfaces;
+    return [
+      h("div", { class: "setting" }, h("label", { for: "through" }, "Marks through surfaces"), through),
+      slider("pointSize", "Point size", 2, 20, 1), slider("normalLength", "Normal length", 8, 80, 1),
+    ];
   }
 }

@@ -25,6 +25,19 @@ export interface SceneObject {
 
 export type Vector = [number, number, number];
 
+/** The description of an option, from the library. */
+export interface Setting {
+  key: string;
+  doc: string;
+  unit: string;
+  kind: "word" | "truth" | "whole" | "number" | "cube";
+  /** The values that are allowed, in words; of kinds that are numbers. */
+  range?: string;
+  words?: string[];
+  /** A change restarts the simulation. */
+  restarts: boolean;
+}
+
 /** The words of the kinds in frames, in the order of their numbers. */
 export interface Kinds {
   contact: string[];
@@ -39,6 +52,8 @@ export interface SceneText {
   title: string;
   source: "simulation" | "recording";
   generation: number;
+  /** Counts restarts: the steps of one run follow each other. */
+  run: number;
   center: Vector;
   bounds: [Vector, Vector];
   border?: [Vector, Vector] | null;
@@ -47,14 +62,9 @@ export interface SceneText {
   time_step: number;
   /** Digits, because numbers of JavaScript are exact only up to 2^53. */
   seed: string;
-  bounding_volume: string;
   contacts: string;
-  broad_phase: string;
-  max_level: number;
-  leaf_size: number;
-  integrator: string | null;
-  /** The words of each option that has words. */
-  choices: Record<string, string[]>;
+  /** What the command `set` takes. The scene has the value of each, by its key. */
+  settings: Setting[];
   kinds: Kinds;
   can: string[];
   statistics: string[];
@@ -66,6 +76,7 @@ export interface FrameText {
   generation: number;
   step: number;
   time: number;
+  broad_phase_method?: string;
   playing: boolean;
   speed: number;
   loop?: boolean;
@@ -97,7 +108,11 @@ type FrameSections = {
 };
 
 /** Missing sections are empty. Positions are present for objects that moved. */
-export type FrameMessage = { kind: "frame"; text: FrameText; events: EventData } & FrameSections;
+export type FrameMessage = {
+  kind: "frame"; text: FrameText; events: EventData;
+  /** The statistics of each step that the page has not yet, row by row; `statistics` is the last row. */
+  steps: Float64Array;
+} & FrameSections;
 
 export interface AnswerMessage {
   kind: "answer";
@@ -236,15 +251,22 @@ function isKinds(value: unknown): value is Kinds {
     impact.every((pair) => Array.isArray(pair) && pair.length === 2 && pair.every(isElement));
 }
 
+function isSetting(value: unknown): value is Setting {
+  if (typeof value !== "object" || value === null) return false;
+  const { key, doc, unit, kind, words } = value as Setting;
+  return [key, doc, unit, kind].every(isText) && (kind !== "word" || isTexts(words));
+}
+
 function need(ok: boolean, name: string): void {
   if (!ok) fail(`its text has no valid “${name}”`);
 }
 
 function sceneText(json: Record<string, unknown>): SceneText {
   const s = json as unknown as SceneText;
-  for (const name of ["version", "title", "bounding_volume", "contacts", "broad_phase"] as const) need(isText(s[name]), name);
+  for (const name of ["version", "title", "contacts"] as const) need(isText(s[name]), name);
   need(s.source === "simulation" || s.source === "recording", "source");
   need(isCount(s.generation), "generation");
+  need(isCount(s.run), "run");
   need(isVector(s.center), "center");
   need(Array.isArray(s.bounds) && s.bounds.length === 2 && s.bounds.every(isVector), "bounds");
   need(!s.border || (s.border.length === 2 && s.border.every(isVector)), "border");
@@ -252,10 +274,7 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need((s.frames !== null) === (s.source === "recording"), "frames");
   need(isNumber(s.time_step), "time_step");
   need(isText(s.seed), "seed");
-  need(isCount(s.max_level), "max_level");
-  need(isCount(s.leaf_size), "leaf_size");
-  need(s.integrator === null || isText(s.integrator), "integrator");
-  need(typeof s.choices === "object" && s.choices !== null && Object.values(s.choices).every(isTexts), "choices");
+  need(Array.isArray(s.settings) && s.settings.every(isSetting), "settings");
   need(isKinds(s.kinds), "kinds");
   for (const name of ["can", "statistics", "series", "warnings"] as const) need(isTexts(s[name]), name);
   need(Array.isArray(s.objects), "objects");
@@ -355,7 +374,11 @@ function checkCurves({ curves, curvePoints, enclosedVertices }: FrameMessage, sc
 
 function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   const text = frameText(sections.json());
-  const frame: FrameMessage = { kind: "frame", text, events: sections.events(""), ...sections.ofFrame() };
+  const rows = sections.ofFrame();
+  const steps = rows.statistics;
+  const frame: FrameMessage = {
+    kind: "frame", text, events: sections.events(""), ...rows, steps, statistics: steps.subarray(Math.max(0, steps.length - scene.statistics)),
+  };
   if (text.generation !== scene.generation) return frame;  // belongs to an earlier scene and will be ignored
   for (const [object, positions] of frame.positions)
     if (positions.length !== 3 * (scene.vertices[object] ?? -1)) fail(`it lacks positions of object ${object}`);
@@ -379,7 +402,7 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   checkIds("penetrations", frame.penetrations, 4, [0, 0], scene.vertices);
   if (frame.penetrationPoints.length !== 2 * frame.penetrations.length) fail("the numbers of penetrations and of their points differ");
   checkCurves(frame, scene);
-  if (frame.statistics.length !== 0 && frame.statistics.length !== scene.statistics) fail("its statistics are not those of the scene");
+  if (scene.statistics === 0 ? steps.length !== 0 : steps.length % scene.statistics !== 0) fail("its statistics are not those of the scene");
   return frame;
 }
 

@@ -11,6 +11,13 @@ export const AXIS_VIEWS = {
 } as const;
 export type AxisView = keyof typeof AXIS_VIEWS;
 
+export interface CameraState {
+  position: number[];
+  target: number[];
+  zoom: number;
+  orthographic: boolean;
+}
+
 interface Flight {
   begin: number;
   from: { position: THREE.Vector3; target: THREE.Vector3; zoom: number };
@@ -187,10 +194,26 @@ export class CameraRig {
     return { position: position.toArray(), target, up: up.toArray(), ...kind };
   }
 
-  private save(): void {
+  get state(): CameraState {
+    const { position, zoom } = this.camera;
+    return { position: position.toArray(), target: this.controls.target.toArray(), zoom, orthographic: this.isOrthographic };
+  }
+
+  set state({ position, target, zoom, orthographic }: CameraState) {
+    this.setOrthographic(orthographic);
+    this.flight = null;
+    this.camera.position.fromArray(position);
+    this.controls.target.fromArray(target);
+    this.camera.zoom = zoom;
+    this.controls.update();
+    this.moved();
+  }
+
+  /** Writes the view to the address. */
+  save(): void {
     const short = (x: number) => String(Number(x.toPrecision(6)));
-    const numbers = [...this.camera.position, ...this.controls.target, this.camera.zoom].map(short);
-    const hash = `#camera=${numbers.join(",")}${this.isOrthographic ? ",orthographic" : ""}`;
+    const { position, target, zoom, orthographic } = this.state;
+    const hash = `#camera=${[...position, ...target, zoom].map(short).join(",")}${orthographic ? ",orthographic" : ""}`;
     try {
       history.replaceState(null, "", location.pathname + location.search + hash);
     } catch {
@@ -203,16 +226,10 @@ export class CameraRig {
     const match = /[#&]camera=([^&]*)/.exec(location.hash);
     if (!match) return false;
     const parts = decodeURIComponent(match[1]!).split(",");
-    const [px, py, pz, tx, ty, tz, zoom] = parts.slice(0, 7).map(Number);
-    const numbers = [px, py, pz, tx, ty, tz, zoom];
-    if (numbers.some((x) => x === undefined || !Number.isFinite(x)) || !(zoom! > 0)) return false;
-    this.setOrthographic(parts[7] === "orthographic");
-    this.flight = null;
-    this.camera.position.set(px!, py!, pz!);
-    this.controls.target.set(tx!, ty!, tz!);
-    this.camera.zoom = zoom!;
-    this.controls.update();
-    this.moved();
+    const numbers = parts.slice(0, 7).map(Number);
+    const zoom = numbers[6] ?? 0;
+    if (numbers.length < 7 || !numbers.every(Number.isFinite) || !(zoom > 0)) return false;
+    this.state = { position: numbers.slice(0, 3), target: numbers.slice(3, 6), zoom, orthographic: parts[7] === "orthographic" };
     return true;
   }
 }

@@ -1,11 +1,13 @@
 /** Layers over the surfaces, filled from the newest frame while switched on. */
 import * as THREE from "three";
-import { OKABE_ITO, proximityLevel } from "../colours";
+import { GAPS, gapLevel, MARKS } from "../colours";
 import { boundsOf, type Model, type ObjectState } from "../model";
 import type { FrameMessage } from "../protocol/messages";
-import { Cells, Dots, Faces, Lines } from "./primitives";
+import { Dots, Lines, type Projection } from "./marks";
+import { Cells, Faces } from "./primitives";
 
-const CONTACT = OKABE_ITO.vermillion;
+/** In CSS pixels; closer marks are thinned out. */
+const SPACING = 13;
 
 /** Writes the three corners of a triangle and returns the offset after them. */
 function writeTriangle(into: Float32Array, at: number, object: ObjectState, triangle: number): number {
@@ -107,49 +109,57 @@ export class Layers {
   readonly nodeBalls = new Cells("balls", { colour: "#ffffff", opacity: 1, order: 2 });
   readonly edges = new Cells("edges", { colour: "#ffffff", opacity: 0.9 });
   readonly nodeEdges = new Cells("edges", { colour: "#ffffff", opacity: 1, order: 2 });
-  readonly pairs = new Lines({ colour: OKABE_ITO.green, size: 3, depthTest: false, order: 4 });
-  readonly candidateFaces = new Faces({ colour: OKABE_ITO.yellow, opacity: 0.85, order: 1 });
-  readonly candidates = new Lines({ colour: OKABE_ITO.blue, size: 1.5, depthTest: false, order: 3 });
-  readonly triangles = new Faces({ colour: CONTACT, opacity: 0.95, order: 2 });
-  readonly points = new Dots({ colour: OKABE_ITO.yellow, order: 6 });
-  readonly normals = new Lines({ colour: OKABE_ITO.sky, size: 2, depthTest: false, order: 5 });
-  readonly segments = new Lines({ colour: "#ffffff", size: 2.5, depthTest: false, order: 5 });
-  readonly proximity = new Cells("edges", { colour: "#ffffff", opacity: 1, order: 5 });
-  readonly depths = new Lines({ colour: OKABE_ITO.purple, size: 2.5, depthTest: false, order: 5 });
-  readonly curveFaces = new Faces({ colour: OKABE_ITO.green, opacity: 0.5, order: 1 });
-  readonly curveArrows = new Lines({ colour: "#ffffff", size: 3.5, depthTest: false, order: 6 });
-  readonly curves = new Dots({ colour: "#ffffff", order: 7 });
-  readonly vertices = new Dots({ colour: OKABE_ITO.purple, order: 6 });
+  readonly pairs = new Lines({ colour: MARKS.pair, size: 3, onTop: true, order: 4 });
+  readonly candidateFaces = new Faces({ colour: MARKS.candidate, opacity: 0.4, order: 1 });
+  readonly candidates = new Lines({ colour: MARKS.candidate, size: 1.5, onTop: true, order: 3 });
+  readonly triangles = new Faces({ colour: MARKS.contact, opacity: 0.7, order: 2 });
+  readonly points = new Dots({ colour: MARKS.contact, spacing: SPACING, order: 6 });
+  readonly normals = new Lines({ colour: MARKS.normal, size: 2, spacing: SPACING, order: 5 });
+  readonly segments = new Lines({ colour: MARKS.contact, size: 2.5, order: 5 });
+  readonly gapLines = new Lines({ colour: "", colours: GAPS, size: 2, spacing: SPACING, order: 4 });
+  readonly proximity = new Dots({ colour: "", colours: GAPS, ring: true, spacing: SPACING, order: 6 });
+  readonly depths = new Lines({ colour: MARKS.depth, size: 2.5, spacing: SPACING, order: 5 });
+  readonly depthPoints = new Dots({ colour: MARKS.depth, spacing: SPACING, order: 6 });
+  readonly curveFaces = new Faces({ colour: MARKS.curve, opacity: 0.4, order: 1 });
+  readonly curveArrows = new Lines({ colour: MARKS.curve, size: 3.5, order: 6 });
+  readonly curves = new Dots({ colour: MARKS.curve, order: 7 });
+  readonly vertices = new Dots({ colour: MARKS.vertex, spacing: SPACING / 2, order: 6 });
   private readonly marks = new Marks();
 
   constructor(private readonly model: Model) {
-    for (const layer of this.all()) this.group.add(layer.shape);
+    for (const layer of Object.values({ ...this.primitives, ...this.sized })) this.group.add(layer.shape);
     model.on("scene", () => this.marks.fit(model.objects));
   }
 
-  private all() {
-    return [
-      this.regions, this.boxes, this.balls, this.edges, this.nodeBoxes, this.nodeBalls, this.nodeEdges, this.pairs, this.candidateFaces,
-      this.candidates, this.triangles, this.points, this.normals, this.segments, this.proximity, this.depths, this.curveFaces, this.curveArrows, this.curves,
-      this.vertices,
-    ];
+  private get primitives() {
+    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, candidateFaces, triangles, curveFaces } = this;
+    return { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, candidateFaces, triangles, curveFaces };
   }
 
-  /** The number of elements that each layer draws. */
+  private get sized() {
+    const { pairs, candidates, points, normals, segments, gapLines, proximity, depths, depthPoints, curveArrows, curves, vertices } = this;
+    return { pairs, candidates, points, normals, segments, gapLines, proximity, depths, depthPoints, curveArrows, curves, vertices };
+  }
+
+  /** The number of elements of each layer, also of those that are thinned out. */
   counts(): Record<string, number> {
-    const { regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, segments, proximity, depths, curveFaces, curveArrows, curves, vertices } = this;
-    return Object.fromEntries(
-      Object.entries({ regions, boxes, balls, edges, nodeBoxes, nodeBalls, nodeEdges, pairs, candidates, candidateFaces, triangles, points, normals, segments, proximity, depths, curveFaces, curveArrows, curves, vertices })
-        .map(([name, layer]) => [name, layer.count]),
-    );
+    return Object.fromEntries(Object.entries({ ...this.primitives, ...this.sized }).map(([name, { count }]) => [name, count]));
+  }
+
+  /** Call before each drawing. */
+  arrange(projection: Projection): void {
+    for (const marks of Object.values(this.sized)) marks.arrange(projection);
   }
 
   update(): void {
     const { layers } = this.model;
-    for (const layer of [this.points, this.vertices, this.segments, this.normals, this.proximity, this.depths, this.curveFaces, this.curveArrows, this.curves, this.nodeBoxes, this.nodeBalls, this.nodeEdges]) layer.depthTest = !this.model.throughSurfaces;
-    this.points.size = this.model.pointSize + 2;
-    this.vertices.size = this.model.pointSize;
-    this.curves.size = this.model.pointSize + 4;
+    const { throughSurfaces, pointSize } = this.model;
+    for (const cells of [this.nodeBoxes, this.nodeBalls, this.nodeEdges, this.curveFaces]) cells.depthTest = !throughSurfaces;
+    for (const marks of Object.values(this.sized)) marks.through = throughSurfaces;
+    this.points.size = this.depthPoints.size = pointSize + 2;
+    this.proximity.size = this.curves.size = pointSize + 4;
+    this.vertices.size = pointSize;
+    this.normals.span = this.model.normalLength;
     this.fillCells();
     this.fillPairs(layers.pairs);
     this.fillCandidates(layers.candidates);
@@ -268,14 +278,11 @@ export class Layers {
   }
 
   private fillNormals(on: boolean): void {
-    const bounds = this.model.scene?.bounds;
-    const size = bounds ? Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!)) : 1;
-    const length = this.model.normalLength * size;
     this.normals.fill(on ? this.pointCount() : 0, (into) => {
       let at = 0;
       this.eachPoint((data, from) => {
         for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + axis]!;
-        for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + axis]! + length * data[from + 4 + axis]!;
+        for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + 4 + axis]!;
       });
       return at / 6;
     });
@@ -300,19 +307,30 @@ export class Layers {
     });
   }
 
-  /** Lines between closest points, coloured by the share of the margins that the distance takes. */
+  /** A ring in the middle of each gap, and a line as long as the gap, coloured by the share of the margins. */
   private fillProximity(on: boolean): void {
     const { frame } = this.model;
-    if (!on || !frame || frame.proximityPairs.length === 0) return this.proximity.fill([]);
-    const rows = new Float32Array(frame.proximityPoints.length);
-    let at = 0;
-    for (let i = 0; i < frame.proximityPairs.length / 2; ++i) {
-      if (!this.shown(frame.proximityPairs[2 * i]!) || !this.shown(frame.proximityPairs[2 * i + 1]!)) continue;
-      rows.set(frame.proximityPoints.subarray(8 * i, 8 * i + 8), at);
-      rows[at + 3] = proximityLevel(frame.proximityPoints[8 * i + 7]!);
-      at += 8;
-    }
-    this.proximity.fill([rows.subarray(0, at)]);
+    const pairs = on && frame ? frame.proximityPairs : new Uint32Array(0);
+    const shown: number[] = [];
+    for (let i = 0; i < pairs.length / 2; ++i) if (this.shown(pairs[2 * i]!) && this.shown(pairs[2 * i + 1]!)) shown.push(8 * i);
+    const data = frame?.proximityPoints ?? new Float32Array(0);
+    this.proximity.fill(shown.length, (into) => {
+      shown.forEach((from, k) => {
+        for (let axis = 0; axis < 3; ++axis) into[4 * k + axis] = (data[from + axis]! + data[from + 4 + axis]!) / 2;
+        into[4 * k + 3] = gapLevel(data[from + 7]!);
+      });
+      return shown.length;
+    });
+    this.gapLines.fill(shown.length, (into) => {
+      shown.forEach((from, k) => {
+        for (let axis = 0; axis < 3; ++axis) {
+          into[7 * k + axis] = data[from + axis]!;
+          into[7 * k + 3 + axis] = data[from + 4 + axis]!;
+        }
+        into[7 * k + 6] = gapLevel(data[from + 7]!);
+      });
+      return shown.length;
+    });
   }
 
   /** Lines from the vertices inside solid objects to the closest points of their surfaces. */
@@ -326,6 +344,14 @@ export class Layers {
         for (const end of [0, 4]) for (let axis = 0; axis < 3; ++axis) into[at++] = frame!.penetrationPoints[8 * i + end + axis]!;
       }
       return at / 6;
+    });
+    this.depthPoints.fill(count, (into) => {
+      let at = 0;
+      for (let i = 0; i < count; ++i) {
+        if (!this.shown(frame!.penetrations[4 * i]!) || !this.shown(frame!.penetrations[4 * i + 2]!)) continue;
+        for (let axis = 0; axis < 3; ++axis) into[at++] = frame!.penetrationPoints[8 * i + axis]!;
+      }
+      return at / 3;
     });
   }
 

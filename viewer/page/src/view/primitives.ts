@@ -1,4 +1,4 @@
-/** The primitives of layers: dots, thick lines, faces, boxes and spheres, each drawn in one call. */
+/** The primitives of layers without a size in pixels: faces, boxes and spheres, each drawn in one call. */
 import * as THREE from "three";
 import { LEVELS } from "../colours";
 import { Stream } from "./stream";
@@ -6,24 +6,19 @@ import { Stream } from "./stream";
 interface Style {
   colour: string;
   opacity?: number;
-  /** In CSS pixels. */
-  size?: number;
   depthTest?: boolean;
   order?: number;
 }
 
-/** Uniforms shared by all primitives; the view updates them. */
-export const shared = { resolution: { value: new THREE.Vector2(1, 1) }, pixelRatio: { value: 1 } };
+/** Uniforms shared by all primitives and marks; the view updates them. */
+export const shared = { resolution: { value: new THREE.Vector2(1, 1) }, pixelRatio: { value: 1 }, lift: { value: 0 } };
 
 function materialOf(style: Style, vertexShader: string, fragmentShader: string): THREE.ShaderMaterial {
   return new THREE.ShaderMaterial({
     glslVersion: THREE.GLSL3,
     uniforms: {
-      resolution: shared.resolution,
-      pixelRatio: shared.pixelRatio,
       colour: { value: new THREE.Color(style.colour) },
       opacity: { value: style.opacity ?? 1 },
-      size: { value: style.size ?? 1 },
     },
     vertexShader,
     fragmentShader: `precision highp float; uniform vec3 colour; uniform float opacity; out vec4 result;\n${fragmentShader}`,
@@ -48,108 +43,9 @@ abstract class Primitive<Shape extends THREE.Object3D & { material: THREE.Shader
     this.shape.material.depthTest = on;
   }
 
-  set colour(colour: string) {
-    (this.shape.material.uniforms["colour"]!.value as THREE.Color).set(colour);
-  }
-
   protected show(count: number): void {
     this.count = count;
     this.shape.visible = count > 0;
-  }
-}
-
-const FLAT = "void main() { result = linearToOutputTexel(vec4(colour, opacity)); }";
-
-/** The fraction of the picture that all dots of a layer may cover. */
-const DOTS_COVER = 0.15;
-const SMALLEST_DOT = 1.5;
-
-/**
- * Round dots with a dark rim. They shrink when there are so many that they would hide everything else. An
- * element is x, y, z.
- */
-export class Dots extends Primitive<THREE.Points<THREE.BufferGeometry, THREE.ShaderMaterial>> {
-  readonly shape;
-  private readonly stream: Stream;
-  /** In CSS pixels, for few dots. */
-  size: number;
-
-  constructor(style: Style) {
-    super();
-    const geometry = new THREE.BufferGeometry();
-    this.stream = new Stream(geometry, 3, { position: [3, 0] }, false);
-    const material = materialOf(
-      style,
-      `uniform float size, pixelRatio;
-       void main() {
-         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-         gl_PointSize = size * pixelRatio;
-       }`,
-      `uniform float size;
-       void main() {
-         float r = length(gl_PointCoord - 0.5) * 2.0;
-         if (r > 1.0) discard;
-         vec3 c = r > 0.72 && size > 4.0 ? vec3(0.02) : colour;
-         result = linearToOutputTexel(vec4(c, opacity));
-       }`,
-    );
-    this.shape = new THREE.Points(geometry, material);
-    this.size = style.size ?? 1;
-    this.shape.onBeforeRender = () => {
-      const { x: width, y: height } = shared.resolution.value;
-      const fitting = Math.max(SMALLEST_DOT, Math.sqrt((DOTS_COVER * width * height) / this.count));
-      material.uniforms["size"]!.value = Math.min(this.size, fitting);
-    };
-    this.prepare(style);
-  }
-
-  fill(count: number, write: (into: Float32Array) => number): void {
-    const written = count > 0 ? write(this.stream.reserve(count)) : 0;
-    this.stream.commit(written);
-    this.show(written);
-  }
-}
-
-/** Lines with a width in pixels. An element is two points. */
-export class Lines extends Primitive<THREE.Mesh<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>> {
-  readonly shape;
-  private readonly stream: Stream;
-
-  constructor(style: Style) {
-    super();
-    const geometry = new THREE.InstancedBufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    this.stream = new Stream(geometry, 6, { start: [3, 0], finish: [3, 3] }, true);
-    const material = materialOf(
-      style,
-      // Clip a line that begins behind the camera; otherwise its direction on the screen is wrong.
-      `uniform float size; uniform vec2 resolution; in vec3 start; in vec3 finish;
-       void main() {
-         vec4 a = modelViewMatrix * vec4(start, 1.0), b = modelViewMatrix * vec4(finish, 1.0);
-         if (projectionMatrix[2][3] == -1.0) {
-           float near = -0.5 * projectionMatrix[3][2] / projectionMatrix[2][2];
-           float edge = -abs(near);
-           if (a.z > edge && b.z < edge) a = mix(a, b, (edge - a.z) / (b.z - a.z));
-           else if (b.z > edge && a.z < edge) b = mix(b, a, (edge - b.z) / (a.z - b.z));
-         }
-         vec4 p = projectionMatrix * a, q = projectionMatrix * b;
-         vec2 along = (q.xy / q.w - p.xy / p.w) * resolution;
-         along = dot(along, along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);
-         vec4 at = position.x < 0.5 ? p : q;
-         at.xy += vec2(-along.y, along.x) * position.y * size / resolution * at.w;
-         gl_Position = at;
-       }`,
-      FLAT,
-    );
-    this.shape = new THREE.Mesh(geometry, material);
-    this.prepare(style);
-  }
-
-  fill(count: number, write: (into: Float32Array) => number): void {
-    const written = count > 0 ? write(this.stream.reserve(count)) : 0;
-    this.stream.commit(written);
-    this.show(written);
   }
 }
 

@@ -1,12 +1,13 @@
 /** Draws surfaces, layers and the selection, only when something has changed. */
 import * as THREE from "three";
-import { OKABE_ITO } from "../colours";
+import { MARKS, OKABE_ITO } from "../colours";
 import { contactCount, findContact, pointsAt } from "../contacts";
 import { boundsOfAll, type Model, type ObjectState } from "../model";
 import { CameraRig } from "./camera";
 import { Layers } from "./layers";
 import { pick, type Hit } from "./picking";
-import { Dots, Faces, Lines, shared } from "./primitives";
+import { Dots, Lines, type Projection } from "./marks";
+import { Faces, shared } from "./primitives";
 import { obstacleOf, Surfaces } from "./surfaces";
 
 /** From the scene to the first camera: from above, so that one looks into open boxes. */
@@ -30,13 +31,16 @@ export class SceneView {
   private readonly scene = new THREE.Scene();
   private readonly surfaces = new Surfaces();
   private readonly selected = new Faces({ colour: OKABE_ITO.yellow, opacity: 0.9, order: 3 });
-  private readonly vertex = new Dots({ colour: OKABE_ITO.yellow, size: 11, depthTest: false, order: 8 });
-  private readonly contactDot = new Dots({ colour: OKABE_ITO.vermillion, size: 12, depthTest: false, order: 9 });
-  private readonly outlines = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Lines({ colour, size: 2.5, depthTest: false, order: 7 }));
+  private readonly vertex = new Dots({ colour: MARKS.selection, size: 11, onTop: true, order: 8 });
+  private readonly contactDot = new Dots({ colour: MARKS.contact, size: 14, onTop: true, order: 9 });
+  private readonly outlines = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Lines({ colour, size: 2.5, onTop: true, order: 7 }));
   private readonly picked = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Faces({ colour, opacity: 0.95, order: 4 }));
-  private readonly distance = new Lines({ colour: "#ffffff", size: 2, depthTest: false, order: 8 });
-  private readonly ruler = new Lines({ colour: OKABE_ITO.yellow, size: 2.5, depthTest: false, order: 8 });
-  private readonly pull = new Lines({ colour: OKABE_ITO.vermillion, size: 2.5, depthTest: false, order: 8 });
+  private readonly distance = new Lines({ colour: MARKS.selection, size: 2, onTop: true, order: 8 });
+  private readonly ruler = new Lines({ colour: MARKS.selection, size: 2.5, onTop: true, order: 8 });
+  private readonly pull = new Lines({ colour: MARKS.contact, size: 2.5, onTop: true, order: 8 });
+  private readonly extras = [this.vertex, this.contactDot, ...this.outlines, this.distance, this.ruler, this.pull];
+  private readonly projection: Projection = { matrix: new THREE.Matrix4(), version: 0 };
+  private readonly size = new THREE.Vector2();
   private dirty = true;
   private filled = false;
   private checkMemory = false;
@@ -50,7 +54,7 @@ export class SceneView {
     this.rig = new CameraRig(canvas, () => this.invalidate());
     this.layers = new Layers(model);
     this.scene.add(this.surfaces.group, this.layers.group);
-    for (const extra of [this.selected, this.vertex, this.contactDot, ...this.outlines, ...this.picked, this.distance, this.ruler, this.pull])
+    for (const extra of [this.selected, ...this.picked, ...this.extras])
       this.scene.add(extra.shape);
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
@@ -76,12 +80,6 @@ export class SceneView {
 
   setBackground(colour: string): void {
     this.renderer.setClearColor(new THREE.Color(colour), this.renderer.getClearAlpha());
-    this.invalidate();
-  }
-
-  setInk(colour: string): void {
-    for (const layer of [this.layers.segments, this.layers.curveArrows, this.layers.curves]) layer.colour = colour;
-    this.distance.colour = colour;
     this.invalidate();
   }
 
@@ -163,6 +161,7 @@ export class SceneView {
     this.surfaces.build(this.model.objects, this.model.positions);
     const bounds = this.model.scene!.bounds;
     this.rig.setExtent(Math.hypot(...bounds[0], ...bounds[1]));
+    shared.lift.value = 0.01 * Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!));
     this.checkMemory = true;
     this.pull.fill(0, () => 0);
     this.select();
@@ -395,6 +394,7 @@ export class SceneView {
   draw(): void {
     this.dirty = false;
     if (!this.filled) this.fill();
+    this.arrange();
     this.renderer.render(this.scene, this.rig.camera);
     if (this.checkMemory && this.model.frame) {
       this.checkMemory = false;
@@ -403,8 +403,22 @@ export class SceneView {
     }
   }
 
-  statistics(): { calls: number; triangles: number } {
-    return { calls: this.renderer.info.render.calls, triangles: this.renderer.info.render.triangles };
+  /** Chooses the marks to draw for the camera of this drawing. */
+  private arrange(): void {
+    const { camera } = this.rig;
+    const { matrix } = this.projection;
+    camera.updateMatrixWorld();
+    const before = matrix.clone();
+    matrix.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    if (!matrix.equals(before) || !this.size.equals(shared.resolution.value)) this.projection.version += 1;
+    this.size.copy(shared.resolution.value);
+    this.layers.arrange(this.projection);
+    for (const marks of this.extras) marks.arrange(this.projection);
+  }
+
+  statistics(): { calls: number; triangles: number; points: number } {
+    const { calls, triangles, points } = this.renderer.info.render;
+    return { calls, triangles, points };
   }
 }
 
