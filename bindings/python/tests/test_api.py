@@ -274,6 +274,8 @@ LEFT_OUT = {
     "ResponseBody": "respond takes one body",
     "MassSpringBody::try_step": "for builds without exceptions",
     "Simulation::try_step": "for builds without exceptions",
+    "Simulation::set_detection": "serves the viewer",
+    "SceneObject": "as Simulation::set_detection",
     "MassSpringBody::options": "the keywords that made it",
     "Scene::user_data": "a dict of Python by object",
     "Scene::set_user_data": "a dict of Python by object",

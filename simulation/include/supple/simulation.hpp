@@ -119,6 +119,12 @@ struct MotionError : Error {
   std::uint64_t step = 0;  ///< the step that failed; all objects are as after the step before
 };
 
+/// A mesh and its options, as `Simulation::add` takes them. The mesh must outlive the call.
+struct SceneObject {
+  const TriangleMesh* mesh = nullptr;
+  ObjectOptions options{};
+};
+
 /// Moves objects by their own motion, step by step, and finds the collisions between them.
 ///
 /// When memory runs out, functions that are not const throw `std::bad_alloc` and may have done a part of
@@ -158,6 +164,12 @@ class Simulation {
   /// As `step`, but returns the error instead of throwing it when a body fails. Returns nothing when the step
   /// succeeded; `scene().result()` then has the result. For builds without exceptions.
   [[nodiscard]] std::optional<MotionError> try_step(const DetectRequest& request = {});
+
+  /// Replaces the scene by one with other options, and detects at the present positions. `objects` has all
+  /// objects, in the order in which they were added. Their motion keeps its state: only the detection
+  /// changes. Events begin again. Cost: that of `Scene::add` for each object. Throws `Error` as `Scene` does,
+  /// and when an object was removed before; then nothing changes.
+  const DetectResult& set_detection(const SceneOptions& options, std::span<const SceneObject> objects);
 
   std::uint64_t step_count() const;  ///< steps taken
   double time() const;               ///< step_count() · time_step, s

@@ -79,6 +79,11 @@ void RigidBody::place(Scene& scene, ObjectId id) const {
     scene.translate(id, time_step_ * velocity_);
 }
 
+void RigidBody::place_again(Scene& scene, ObjectId id) const {
+  scene.set_positions(id, std::span<const Vec3d>(start_));
+  scene.set_transform(id, transform_);
+}
+
 void RigidBody::reflect_at(const Border& border) {
   PointBounds bounds{low_ + way_, high_ + way_};
   if (spins()) {

@@ -19,6 +19,8 @@ class RigidBody {
   void step();
   /// Moves the object of the scene by the last step.
   void place(Scene& scene, ObjectId id) const;
+  /// Places the object of another scene, which has seen none of the steps.
+  void place_again(Scene& scene, ObjectId id) const;
   /// Call after a step.
   void reflect_at(const Border& border);
   /// Starts at other positions, with the present velocity and spin.
@@ -38,7 +40,7 @@ class RigidBody {
   Vec3d center_, low_, high_;  // of the finite vertices at the start
   std::uint64_t steps_ = 0;    // since the start
   Vec3d way_;                  // sum of all steps
-  RigidTransform transform_;   // of the start
+  RigidTransform transform_;   // of the start, after all steps
   mutable std::vector<Vec3d> now_;
   mutable bool is_current_ = false;  // `now_` has the present positions
 };

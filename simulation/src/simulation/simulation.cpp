@@ -69,8 +69,7 @@ Simulation::Implementation::Implementation(const SimulationOptions& simulation_o
 ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, ObjectOptions object_options,
                                          ObjectMotion motion) {
   check_mesh(mesh);
-  if (options.response)
-    object_options.margin = std::max(object_options.margin, least_margin(*options.response));
+  object_options = with_margin(std::move(object_options));
   if (motion.index() != 0 && object_options.is_static) {
     fail((object_options.name.empty() ? mesh.name : object_options.name) +
          " is static and has a motion; leave one of them out");
@@ -103,6 +102,12 @@ ObjectId Simulation::Implementation::add(const TriangleMesh& mesh, ObjectOptions
   objects_[id.index] = std::move(added);
   has_current_result_ = false;
   return id;
+}
+
+ObjectOptions Simulation::Implementation::with_margin(ObjectOptions object_options) const {
+  if (options.response)
+    object_options.margin = std::max(object_options.margin, least_margin(*options.response));
+  return object_options;
 }
 
 void Simulation::Implementation::prepare_response(const TriangleMesh& mesh, SimulatedObject& object) {
@@ -155,6 +160,33 @@ void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3
   } else {
     found.own_positions.assign(positions.begin(), positions.end());
   }
+}
+
+/// The scene is replaced at the end, when nothing can fail any more.
+const DetectResult& Simulation::Implementation::set_detection(const SceneOptions& scene_options,
+                                                              std::span<const SceneObject> given) {
+  if (given.size() != objects_.size())
+    fail("set_detection: there are " + std::to_string(objects_.size()) + " objects, and " +
+         std::to_string(given.size()) + " were given");
+  Scene made(scene_options);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const ObjectId id = made.add(*given[i].mesh, with_margin(given[i].options));
+    if (objects_[i] == nullptr || objects_[i]->id != id)
+      fail("set_detection: object " + std::to_string(i) +
+           " was removed; a new scene would give its number to another object");
+    // A static object stays where it was added.
+    if (given[i].options.is_static) continue;
+    if (objects_[i]->rigid_body)
+      objects_[i]->rigid_body->place_again(made, id);
+    else
+      made.set_positions(id, objects_[i]->positions());
+  }
+  made.detect();
+  scene = std::move(made);
+  options.scene = scene_options;
+  for (const auto& object : objects_) object->is_on_path = false;
+  has_current_result_ = true;
+  return scene.result();
 }
 
 const DetectResult& Simulation::Implementation::detect(const DetectRequest& request) {
@@ -372,6 +404,11 @@ const DetectResult& Simulation::step(const DetectRequest& request) {
 }
 std::optional<MotionError> Simulation::try_step(const DetectRequest& request) {
   return implementation_->try_step(request);
+}
+
+const DetectResult& Simulation::set_detection(const SceneOptions& options,
+                                              std::span<const SceneObject> objects) {
+  return implementation_->set_detection(options, objects);
 }
 
 std::uint64_t Simulation::step_count() const {

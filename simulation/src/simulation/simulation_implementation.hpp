@@ -52,6 +52,7 @@ class Simulation::Implementation {
   void remove(ObjectId id);
   const DetectResult& detect(const DetectRequest& request);
   std::optional<MotionError> try_step(const DetectRequest& request);
+  const DetectResult& set_detection(const SceneOptions& scene_options, std::span<const SceneObject> given);
   void set_positions(ObjectId id, std::span<const Vec3d> positions);
   SimulatedObject& object(ObjectId id, const char* call) const;
 
@@ -61,6 +62,7 @@ class Simulation::Implementation {
   double motion_seconds = 0;
 
  private:
+  ObjectOptions with_margin(ObjectOptions object_options) const;
   void prepare_response(const TriangleMesh& mesh, SimulatedObject& object);
   std::shared_ptr<ImpulseSpread> spread_of(const TriangleMesh& mesh, const MassSpringOptions& springs) const;
   void call_functions(double seconds);
