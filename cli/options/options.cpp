@@ -154,6 +154,14 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
                     "machines who know the full address can see and control the page (default: 127.0.0.1)")
                  ->type_name("ADDRESS")),
        is_served, no_export});
+  dependences.push_back(
+      {group(app->add_option(
+                    "--token-file", options.token_file,
+                    "File with the secret part of the address, made when it does not exist: with --port, the "
+                    "address stays the same, and an open page connects again after a restart (default: a "
+                    "new secret in each run)")
+                 ->type_name("FILE")),
+       is_served, no_export});
   dependences.push_back({group(app->add_flag_callback(
                              "--no-open", [&] { options.open_browser = false; },
                              "Print the address without opening a browser")),

@@ -87,6 +87,7 @@ struct ViewOptions : MethodOptions {
   std::optional<double> time_step;
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any free port
+  std::string token_file;  ///< empty: a new token in each run
   bool open_browser = true;
   viewer::MemoryBudget budget;
   std::string page_file;  ///< file to write instead of serving; empty: serve

@@ -1,5 +1,7 @@
 #include "access.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #if __has_include(<sys/random.h>)
 #include <sys/random.h>
@@ -7,10 +9,13 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
+#include "server/server.hpp"
 #include "supple/error.hpp"
 
 namespace supple::viewer {
@@ -27,6 +32,29 @@ std::string bracketed(const std::string& address) {
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
+}
+
+/// The address of this machine that others can use, or the loopback address. Connecting a UDP socket sends
+/// nothing: it chooses the interface towards an address, here one for documentation that nobody has.
+std::string outward_address(bool is_v6) {
+  namespace ip = boost::asio::ip;
+  boost::asio::io_context context;
+  boost::system::error_code error;
+  ip::udp::socket socket(context);
+  socket.connect({ip::make_address(is_v6 ? "2001:db8::1" : "192.0.2.1"), 9}, error);  // opens it, too
+  const ip::udp::endpoint here = error ? ip::udp::endpoint() : socket.local_endpoint(error);
+  if (error || here.address().is_unspecified()) return is_v6 ? "::1" : "127.0.0.1";
+  return here.address().to_string();
+}
+
+constexpr std::size_t token_length = 32;
+
+bool is_token(std::string_view text) {
+  return text.size() == token_length && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+[[noreturn]] void fail_of_file(const std::string& path, const std::string& what) {
+  throw Error("--token-file: " + path + ": " + what);
 }
 
 /// Four numbers, or anything in brackets. A DNS name cannot have either form.
@@ -53,6 +81,30 @@ std::string make_token() {
   return token;
 }
 
+std::string token_of_file(const std::string& path) {
+  // Only the user may read it. Another program that makes the file at the same time wins.
+  const int made = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (made >= 0) {
+    const std::string line = make_token() + "\n";
+    const bool is_written = write(made, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    if (close(made) != 0 || !is_written) fail_of_file(path, "cannot be written");
+    return line.substr(0, token_length);
+  }
+  if (errno != EEXIST) fail_of_file(path, std::string("cannot be written: ") + std::strerror(errno));
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) fail_of_file(path, std::string("cannot be read: ") + std::strerror(errno));
+  struct stat status {};
+  std::array<char, token_length + 2> content{};
+  const bool is_private = fstat(file, &status) == 0 && (status.st_mode & (S_IRWXG | S_IRWXO)) == 0;
+  const ssize_t length = read(file, content.data(), content.size());
+  close(file);
+  if (!is_private) fail_of_file(path, "other users can read it; chmod 600 it, or remove it for a new token");
+  std::string_view text(content.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
+  if (text.ends_with('\n')) text.remove_suffix(1);
+  if (!is_token(text)) fail_of_file(path, "it has no token of 32 hexadecimal digits; remove it for a new one");
+  return std::string(text);
+}
+
 Target parse_target(std::string_view target) {
   const std::size_t end_of_path = std::min(target.find('?'), target.size());
   Target parsed{target.substr(0, end_of_path), {}};
@@ -73,7 +125,7 @@ Access::Access(const std::string& address, std::uint16_t port, std::string token
     port_ += std::to_string(port);
   }
   if (any_address_) {
-    hosts_.push_back(address == "::" ? "[::1]" : "127.0.0.1");
+    hosts_.push_back(bracketed(outward_address(address == "::")));
     std::array<char, 256> name{};
     if (gethostname(name.data(), name.size() - 1) == 0) hosts_.emplace_back(name.data());
   } else {

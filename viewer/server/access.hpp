@@ -23,7 +23,8 @@ class Access {
   Access(const std::string& address, std::uint16_t port, std::string token);
 
   const std::string& token() const { return token_; }
-  /// `127.0.0.1:8080` or `[::1]:8080`. When the server listens on all interfaces: the loopback address.
+  /// `127.0.0.1:8080` or `[::1]:8080`. When the server listens on all interfaces: the address of this machine
+  /// in its network, or the loopback address without a network.
   const std::string& host() const { return hosts_.front(); }
 
   /// Whether the `Host` header names this server, by IP address or as localhost. Other names are refused,

@@ -278,7 +278,8 @@ class Server::Implementation {
   Implementation(Session session, const ServerOptions& options)
       : options_(options),
         acceptor_(listen(sockets_, options)),
-        access_(options.address, acceptor_.local_endpoint().port(), make_token()),
+        access_(options.address, acceptor_.local_endpoint().port(),
+                options.token.empty() ? make_token() : options.token),
         requests_{
             access_, options.page,
             [this](beast::tcp_stream stream, const auto& request) { connect(std::move(stream), request); },

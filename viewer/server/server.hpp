@@ -17,10 +17,16 @@ struct ServerOptions {
   std::string_view page{};            ///< HTML; must outlive the server
   /// A page that is silent for this long is disconnected. It gets a ping before that.
   std::chrono::milliseconds patience{30'000};
+  std::string token{};  ///< empty: a new random token; see `token_of_file`
 };
 
 /// Whether only programs on this machine can reach the address. Throws `Error` for an invalid IP address.
 bool is_loopback(const std::string& address);
+
+/// The token in a file. Makes the file with a new token when it does not exist, so that the address of a server
+/// stays the same when it is started again. Throws `Error` when the file cannot be used, or when others can
+/// read it.
+std::string token_of_file(const std::string& path);
 
 /// Serves a session to one page at a time (docs/protocol.md). A client must address the server by its own
 /// address, which excludes pages of other sites, and must know a random token.
@@ -34,7 +40,7 @@ class Server {
 
   std::uint16_t port() const;
   const std::string& token() const;
-  /// The address to open in a browser.
+  /// The address to open in a browser. When the server listens on all interfaces, one that others can use.
   std::string url() const;
 
   /// Serves until `should_end`, which is called ten times a second, returns true; then notifies the page.
