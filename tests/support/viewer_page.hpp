@@ -77,10 +77,12 @@ class TestPage {
     return message.json["message"];
   }
 
-  /// The newest frame; the test fails without one.
+  /// The newest frame, which the page then draws; the test fails without one.
   ViewerMessage frame() {
     say({{"do", "credit"}, {"frames", 1}});
-    return only(ViewerMessage::frame);
+    ViewerMessage frame = only(ViewerMessage::frame);
+    say({{"do", "credit"}, {"frames", 0}});
+    return frame;
   }
   /// Takes this many steps and returns the last frame.
   ViewerMessage frame_after_steps(int count) {

@@ -110,7 +110,7 @@ std::optional<std::uint64_t> Arguments::digits(const char* name) {
     const auto [rest, error] = std::from_chars(value->text.data(), end, number);
     if (error == std::errc() && rest == end) return number;
   }
-  must_be(name, "a text of digits, from \"0\" to \"18446744073709551615\"");
+  must_be(name, "a whole number from 0 to 18446744073709551615, as a text");
   return std::nullopt;
 }
 

@@ -39,7 +39,7 @@ class Session::Implementation {
       : show_(std::move(show)),
         most_memory_(estimated_memory(show_, settings_) + budget.bytes),
         stage_(std::make_unique<Stage>(show_, settings_)) {
-    if (stage_->has_motion()) player_.play(*stage_);
+    if (stage_->simulation() != nullptr && stage_->has_motion()) player_.play(*stage_);
   }
 
   void greet();
@@ -84,7 +84,8 @@ class Session::Implementation {
   void node_pairs(Arguments& arguments);
 
   const SceneView& scene() const { return stage_->show(); }
-  void set_stage(const Settings& settings);
+  void restart(const Settings& settings);
+  void change(const Settings& settings);
   bool is_of_recording(Arguments& arguments) const;
   bool is_of_simulation(Arguments& arguments) const;
 
@@ -101,8 +102,9 @@ class Session::Implementation {
 
   bool is_greeted_ = false;
   bool has_ended_ = false;
-  std::uint64_t generation_ = 0;
+  SceneNumbers numbers_;
   bool owes_scene_ = false, owes_series_ = false, has_news_ = false;
+  bool has_sent_frame_ = false;  // of this scene message
   std::int64_t credit_ = 0;
   std::deque<Reply> replies_;
   std::optional<double> id_;  // of the current command
@@ -134,6 +136,7 @@ void Session::Implementation::greet() {
   is_greeted_ = true;
   owes_scene_ = true;
   has_news_ = true;
+  packer_.forget();
   credit_ = 0;
   replies_.clear();
   layers_ = {};
@@ -143,7 +146,11 @@ void Session::Implementation::greet() {
 double Session::Implementation::advance(double seconds) {
   if (!is_greeted_ || has_ended_) return Player::idle_seconds;
   Player::Outcome outcome;
-  auto failure = failure_of([&] { outcome = player_.advance(*stage_, seconds); });
+  const std::uint64_t step = stage_->source().step();
+  auto failure = failure_of([&] {
+    outcome = player_.advance(*stage_, seconds);
+    if (stage_->simulation() != nullptr && stage_->source().step() != step) packer_.add_step(stage_->source());
+  });
   if (outcome.failure) failure = Failure{*outcome.failure};
   if (failure) {
     id_.reset();
@@ -164,8 +171,11 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
     owes_scene_ = false;
     owes_series_ = stage_->recording() != nullptr;
     has_news_ = true;
-    packer_.forget();
-    pack_scene(*stage_, ++generation_, json_, message);
+    has_sent_frame_ = false;
+    player_.set_watched(false);
+    packer_.forget_positions();
+    ++numbers_.generation;
+    pack_scene(*stage_, numbers_, json_, message);
   } else if (owes_series_) {
     owes_series_ = false;
     pack_series(*scene().frames, message);
@@ -176,6 +186,7 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
   } else if (has_news_ && credit_ > 0 && !has_ended_) {
     has_news_ = false;
     if (!pack_frame(message)) return next_message(message);
+    has_sent_frame_ = true;
     --credit_;
   } else {
     return {};
@@ -186,7 +197,7 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
 /// Returns false on failure, and then drops the optional layers.
 bool Session::Implementation::pack_frame(MessageWriter& message) {
   const FrameView frame{scene(),     stage_->source(),  layers_,         stage_->center(),
-                        generation_, player_.playing(), player_.speed(), player_.loop()};
+                        numbers_.generation, player_.playing(), player_.speed(), player_.loop()};
   const auto failure = failure_of([&] { packer_.pack(frame, message); });
   if (!failure) return true;
   id_.reset();
@@ -261,6 +272,7 @@ void Session::Implementation::credit(Arguments& arguments) {
   const auto frames = arguments.required("frames", arguments.integer("frames", 0, largest_count));
   if (!arguments.check()) return;
   credit_ = std::min(most_credit, credit_ + std::min(frames, most_credit));
+  if (has_sent_frame_) player_.set_watched(true);  // the page has drawn it
 }
 
 void Session::Implementation::play(Arguments& arguments) {
@@ -317,24 +329,40 @@ void Session::Implementation::layers(Arguments& arguments) {
 
 void Session::Implementation::reset(Arguments& arguments) {
   Settings settings = settings_;
-  if (const auto seed = arguments.digits("seed")) settings.seed = *seed;
+  if (const auto seed = arguments.digits("seed")) settings.restart.seed = *seed;
   if (!is_of_simulation(arguments) || !arguments.check()) return;
-  set_stage(settings);
+  restart(settings);
 }
 
 void Session::Implementation::set(Arguments& arguments) {
   const Settings settings = read_settings(settings_, stage_->simulation() != nullptr, arguments);
-  if (arguments.check() && fits_in_memory(show_, settings, most_memory_, arguments)) set_stage(settings);
+  if (!arguments.check() || !fits_in_memory(show_, settings, most_memory_, arguments)) return;
+  if (settings.restart == settings_.restart)
+    change(settings);
+  else
+    restart(settings);
 }
 
-/// On failure nothing changes.
-void Session::Implementation::set_stage(const Settings& settings) {
-  const std::uint64_t frame = stage_->recording() ? stage_->recording()->step() : 0;
-  auto stage = std::make_unique<Stage>(show_, settings, frame);
+/// Changes how contacts are found. The objects stay where they are: a simulation keeps its state, and a
+/// recording its frame. On failure nothing changes.
+void Session::Implementation::change(const Settings& settings) {
+  if (stage_->simulation() != nullptr)
+    stage_->set_detection(show_, settings);
+  else
+    stage_ = std::make_unique<Stage>(show_, settings, stage_->recording()->step());
+  settings_ = settings;
+  owes_scene_ = true;
+}
+
+/// Starts again at the first step. On failure nothing changes.
+void Session::Implementation::restart(const Settings& settings) {
+  auto stage = std::make_unique<Stage>(show_, settings);
   stage_ = std::move(stage);
   settings_ = settings;
   player_.restart();
   keep_objects(layers_, scene().objects.size());
+  packer_.forget();
+  ++numbers_.run;
   owes_scene_ = true;
 }
 

@@ -104,18 +104,16 @@ void check_show(const SceneView& show) {
 }  // namespace
 
 Settings read_settings(Settings settings, bool of_simulation, Arguments& arguments) {
-  const auto keep = [](auto& setting, const auto& value) {
-    if (value) setting = static_cast<typename std::remove_reference_t<decltype(setting)>::value_type>(*value);
-  };
   const auto read = [&]<class Struct, class Value>(const Field<Struct, Value>& field, Value& value) {
     return is_setting(field) && arguments.option(field, value);
   };
   settings.scene.read(read);
   settings.octree.read(read);
   if (of_simulation) {
-    keep(settings.objects, arguments.integer("objects", 1, 100'000));
-    keep(settings.integrator, arguments.one_of<Integrator>("integrator"));
-    keep(settings.time_step, arguments.number("time_step", 1e-6, 10));
+    for_each_restart_setting([&]<class Struct, class Value>(const Field<Struct, Value>& field, auto member) {
+      Value value{};
+      if (arguments.option(field, value)) settings.restart.*member = value;
+    });
   }
   return settings;
 }
@@ -124,7 +122,7 @@ double estimated_memory(const SceneView& show, const Settings& settings) {
   // In bytes. Small leaves have as many nodes as triangles.
   constexpr double of_object = 20'000, of_vertex = 400, of_triangle = 400, of_leaf = 4'000;
   double bytes = 0;
-  visit_repeated(show, settings.objects.value_or(show.objects.size()), [&](const ViewedObject& object) {
+  visit_repeated(show, settings.restart.objects.value_or(show.objects.size()), [&](const ViewedObject& object) {
     ObjectOctreeOptions octree = object.options.octree;
     settings.octree.apply_to(octree);
     const auto vertices = static_cast<double>(object.mesh.positions.size());
@@ -140,7 +138,7 @@ bool fits_in_memory(const SceneView& show, const Settings& settings, double byte
   const auto megabytes = [](double amount) {
     return std::to_string(static_cast<std::uint64_t>(amount / 1e6)) + " MB";
   };
-  arguments.fail(std::to_string(settings.objects.value_or(show.objects.size())) +
+  arguments.fail(std::to_string(settings.restart.objects.value_or(show.objects.size())) +
                  " objects with such octrees can need " + megabytes(needed) + ", and this session has " +
                  megabytes(bytes) +
                  "; show fewer objects, or larger leaves, or use supple view with a larger --max-memory");
@@ -150,7 +148,7 @@ bool fits_in_memory(const SceneView& show, const Settings& settings, double byte
 SceneView arranged(const SceneView& show, const Settings& settings) {
   check_show(show);
   SceneView arranged = show;
-  if (settings.objects) repeat_objects(arranged, *settings.objects);
+  if (settings.restart.objects) repeat_objects(arranged, *settings.restart.objects);
   SimulationOptions& simulation = arranged.simulation;
   settings.scene.apply_to(simulation.scene);
   simulation.scene.contacts = with_included(simulation.scene.contacts);
@@ -159,12 +157,12 @@ SceneView arranged(const SceneView& show, const Settings& settings) {
   simulation.scene.comparison.colliding_vertices = false;
   simulation.scene.manifolds = false;
   simulation.fused_refit = simulation.fused_refit && simulation.scene.comparison.lazy_refit;
-  simulation.time_step = settings.time_step.value_or(simulation.time_step);
-  simulation.seed = settings.seed.value_or(simulation.seed);
+  simulation.time_step = settings.restart.time_step.value_or(simulation.time_step);
+  simulation.seed = settings.restart.seed.value_or(simulation.seed);
   for (ViewedObject& object : arranged.objects) {
     settings.octree.apply_to(object.options.octree);
     if (auto* const motion = std::get_if<MassSpringMotion>(&object.motion))
-      motion->springs.integrator = settings.integrator.value_or(motion->springs.integrator);
+      motion->springs.integrator = settings.restart.integrator.value_or(motion->springs.integrator);
   }
   return arranged;
 }

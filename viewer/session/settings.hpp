@@ -12,15 +12,44 @@
 
 namespace supple::viewer {
 
+/// Settings that a simulation cannot change while it runs: a change restarts it.
+struct RestartSettings {
+  std::optional<std::uint32_t> objects{};  ///< number of objects
+  std::optional<Integrator> integrator{};
+  std::optional<double> time_step{};
+  std::optional<std::uint64_t> seed{};
+
+  constexpr bool operator==(const RestartSettings&) const = default;
+};
+
 /// The values that the commands `set` and `reset` change.
 struct Settings {
   Overrides<SceneOptions> scene{};
   Overrides<ObjectOctreeOptions> octree{};  ///< of all objects
-  std::optional<std::uint32_t> objects{};   ///< number of objects
-  std::optional<Integrator> integrator{};
-  std::optional<double> time_step{};
-  std::optional<std::uint64_t> seed{};
+  RestartSettings restart{};
 };
+
+/// Has the description of the number of objects.
+struct ObjectCount {
+  std::uint32_t objects = 1;
+};
+
+/// Calls `visitor(field, member)` for each setting of the command `set` that restarts. `member` points to the
+/// member of `RestartSettings`.
+template <class Visitor>
+constexpr void for_each_restart_setting(Visitor&& visitor) {
+  visitor(Field<ObjectCount, std::uint32_t>{.name = "objects",
+                                            .member = &ObjectCount::objects,
+                                            .doc = "Number of objects: the list is repeated, or cut",
+                                            .range = ValueRange::from(1, 100'000)},
+          &RestartSettings::objects);
+  for_each_field<MassSpringOptions>([&]<class Value>(const Field<MassSpringOptions, Value>& field) {
+    if constexpr (std::is_same_v<Value, Integrator>) visitor(field, &RestartSettings::integrator);
+  });
+  for_each_field<SimulationOptions>([&]<class Value>(const Field<SimulationOptions, Value>& field) {
+    if constexpr (std::is_same_v<Value, double>) visitor(field, &RestartSettings::time_step);
+  });
+}
 
 /// Whether the commands can set an option of the scene or of an octree. The colliding vertices are a layer of
 /// frames instead. A page shows no manifolds, and one listing of proximity.

@@ -15,6 +15,7 @@ namespace {
 std::uint64_t step_after(double seconds) {
   TestPage page(three_balls());
   page.scene();
+  page.frame();
   page.ask({{"do", "play"}});
   const double wait = page.session.advance(seconds);
   EXPECT_TRUE(wait >= 0 && std::isfinite(wait)) << wait;

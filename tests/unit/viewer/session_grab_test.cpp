@@ -250,6 +250,7 @@ TEST(ViewerGrab, NoDragMakesABodyExplode) {
     const SceneView show = apart(motion, 4);
     TestPage page(show);
     page.scene();
+    page.frame();
     page.ask({{"do", "speed"}, {"factor", 0}});
     page.ask({{"do", "grab"}, {"object", 0}, {"vertex", foremost(show.objects[0].mesh)}});
     for (int i = 0; i < 200; ++i) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "../../support/viewer_page.hpp"
+#include "session/sources/player.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -9,7 +10,9 @@ TEST(ViewerPlayer, KeepsUpWithTimeAndGivesUpWhatItCannotCatchUpWith) {
   TestPage page(three_balls());
   page.scene();
   Session& session = page.session;
+  page.frame();
   EXPECT_NEAR(session.advance(0.004), 0.006, 1e-12);
+  page.ask({{"do", "layers"}});  // makes the session send a frame
   EXPECT_EQ(page.frame().json["step"], 0);
   EXPECT_NEAR(session.advance(0.006), 0.01, 1e-12);
   EXPECT_EQ(page.frame().json["step"], 1);
@@ -41,6 +44,31 @@ TEST(ViewerPlayer, KeepsUpWithTimeAndGivesUpWhatItCannotCatchUpWith) {
   page.ask({{"do", "pause"}});  // cancels the remaining steps
   session.advance(0);
   EXPECT_EQ(page.frame().json["step"], 9);
+}
+
+TEST(ViewerPlayer, WaitsUntilThePageHasDrawnTheFirstFrame) {
+  TestPage page(three_balls());
+  Session& session = page.session;
+  for (const Json& start : {Json{{"do", "play"}}, Json{{"do", "reset"}}, Json{{"do", "set"}, {"objects", 3}}}) {
+    page.say(start);
+    page.drain();
+    EXPECT_EQ(session.advance(0.01), Player::idle_seconds) << start;
+    page.say({{"do", "credit"}, {"frames", 2}});
+    EXPECT_EQ(page.only(ViewerMessage::frame).json["step"], 0) << start;
+    for (int i = 0; i < 5; ++i) session.advance(0.01);
+    EXPECT_TRUE(page.drain().empty()) << "the page still draws" << start;
+    page.say({{"do", "credit"}, {"frames", 1}});
+    session.advance(0.01);
+    const ViewerMessage frame = page.only(ViewerMessage::frame);
+    EXPECT_EQ(frame.json["step"], 1) << start;
+    EXPECT_EQ(frame.json["playing"], true);
+  }
+}
+
+TEST(ViewerPlayer, StepsNeedNoDrawnFrame) {
+  TestPage page(three_balls());
+  page.scene();
+  EXPECT_EQ(page.frame_after_steps(3).json["step"], 3);
 }
 
 TEST(ViewerPlayer, ObjectsWithoutMotionArePaused) {

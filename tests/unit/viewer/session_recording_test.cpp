@@ -177,6 +177,11 @@ TEST(ViewerRecording, PlaysInItsOwnTimeAndLeavesOutWhatIsLate) {
   TestPage page(record(60).show);
   opening(page);
   Session& session = page.session;
+  session.advance(0.1);
+  const ViewerMessage first = page.frame();
+  EXPECT_EQ(first.json["step"], 0);
+  EXPECT_EQ(first.json["playing"], false) << "recordings open paused";
+  page.ask({{"do", "play"}});
   EXPECT_NEAR(session.advance(0), 0.01, 1e-12);
   EXPECT_EQ(page.frame().json["playing"], true);
   EXPECT_NEAR(session.advance(0.004), 0.006, 1e-12);
@@ -206,6 +211,8 @@ TEST(ViewerRecording, LoopsAndStepsBothWaysWithinItsEnds) {
   TestPage page(record(20).show);
   opening(page);
   Session& session = page.session;
+  page.frame();
+  page.ask({{"do", "play"}});
   page.ask({{"do", "loop"}, {"on", true}});
   page.ask({{"do", "speed"}, {"factor", 0}});
   std::vector<int> seen;

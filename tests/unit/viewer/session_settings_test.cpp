@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,11 +12,21 @@
 namespace supple::viewer {
 namespace {
 
-TEST(ViewerSettings, SetChangesEachOptionAndStartsAnew) {
+/// The settings that restart, as the scene message describes them.
+std::vector<std::string> restarting_settings(const ViewerMessage& scene) {
+  std::vector<std::string> keys;
+  for (const Json& setting : scene.json["settings"]) {
+    if (setting["restarts"]) keys.push_back(setting["key"]);
+  }
+  return keys;
+}
+
+/// After each setting, the step is kept or the restart was announced.
+TEST(ViewerSettings, SetChangesEachOptionAndKeepsTheStateOrRestartsAsAnnounced) {
   TestPage page(three_balls());
-  page.scene();
+  const std::vector<std::string> restarting = restarting_settings(page.scene());
+  EXPECT_EQ(restarting, (std::vector<std::string>{"objects", "integrator", "time_step"}));
   page.ask({{"do", "pause"}});
-  page.frame_after_steps(5);
   const std::vector<std::pair<std::string, Json>> options{{"bounding_volume", "sphere"},
                                                           {"max_level", 2},
                                                           {"leaf_size", 8},
@@ -25,28 +36,102 @@ TEST(ViewerSettings, SetChangesEachOptionAndStartsAnew) {
                                                           {"broad_phase", "brute"},
                                                           {"contacts", "continuous"},
                                                           {"contacts", "none"},
+                                                          {"objects", 3},
                                                           {"time_step", 0.005}};
-  int generation = 1;
+  int generation = 1, run = 1;
   for (const auto& [name, value] : options) {
+    const ViewerMessage before = page.frame_after_steps(5);
     page.say({{"do", "set"}, {name, value}, {"id", 1}});
     const std::vector<ViewerMessage> messages = page.drain();
     ASSERT_EQ(messages.size(), 2u) << name;
+    const bool restarts = std::count(restarting.begin(), restarting.end(), name) > 0;
     const ViewerMessage& scene = messages.front();
     ASSERT_EQ(scene.kind, ViewerMessage::scene);
-    EXPECT_EQ(scene.json[name], value);
+    if (name != "objects") {
+      EXPECT_EQ(scene.json[name], value);
+    }
     EXPECT_EQ(scene.json["generation"], ++generation);
+    EXPECT_EQ(scene.json["run"], restarts ? ++run : run) << name;
     EXPECT_EQ(messages.back().kind, ViewerMessage::answer);
     const ViewerMessage frame = page.frame();
-    EXPECT_EQ(frame.json["step"], 0);
+    EXPECT_EQ(frame.json["step"], restarts ? 0 : before.json["step"].get<int>()) << name;
     EXPECT_EQ(frame.json["playing"], false);
-    for (std::uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(frame.has(32, i));
-    EXPECT_EQ(page.frame_after_steps(2).json["step"], 2);
+    for (std::uint32_t i = 0; i < 3; ++i) ASSERT_TRUE(frame.has(32, i));
+    if (!restarts) {
+      EXPECT_EQ(frame.values<Vec3f>(32, 1), before.values<Vec3f>(32, 1)) << name;
+    }
   }
   page.say({{"do", "set"}});  // changes nothing
   const ViewerMessage scene = page.scene();
   EXPECT_EQ(scene.json["bounding_volume"], "sphere");
   EXPECT_EQ(scene.json["leaf_size"], 8);
   EXPECT_EQ(scene.json["time_step"], 0.005);
+}
+
+/// Options of the detection change nothing of the motion, and find what a scene with these options finds.
+TEST(ViewerSettings, AfterASetTheMotionGoesOnAsWithoutIt) {
+  SceneView show = three_balls();
+  show.objects.push_back(test_ball("rigid", {-2.5, 0, 0}));
+  show.objects.back().motion = RigidMotion{.velocity = {1, 0, 0}, .spin = {0, 90, 0}};
+  show.objects.push_back(test_ball("drifts", {0, 2.5, 0}));
+  show.objects.back().motion = RigidMotion{.velocity = {0, -1, 0}};
+  TestPage page(show), other(show);
+  const Vec3d center = center_of(page.scene());
+  other.scene();
+  show.simulation.scene.bounding_volume = BoundingVolume::obb;
+  Simulation expected = simulation_of(show);
+  for (TestPage* const each : {&page, &other}) {
+    each->ask({{"do", "pause"}});
+    each->frame_after_steps(60);
+  }
+  page.say({{"do", "set"}, {"bounding_volume", "obb"}});
+  page.scene();
+  page.frame();
+  for (int i = 0; i < 90; ++i) expected.step();
+  const ViewerMessage frame = page.frame_after_steps(30), without = other.frame_after_steps(30);
+  EXPECT_EQ(frame.json["step"], 90);
+  for (const std::uint32_t moving : {0u, 1u, 3u, 4u})
+    EXPECT_EQ(frame.values<Vec3f>(32, moving), without.values<Vec3f>(32, moving)) << moving;
+  EXPECT_GT(frame.section(34).count, 0u);
+  expect_contacts(frame, expected.scene().result(), center);
+}
+
+TEST(ViewerSettings, ASetLosesNoEventsAndNoStatistics) {
+  TestPage page(touching_balls());
+  page.scene();
+  page.ask({{"do", "pause"}});
+  EXPECT_EQ(page.frame().values<Pair>(44).size(), 1u);
+  page.ask({{"do", "step"}, {"count", 3}});
+  for (int i = 0; i < 3; ++i) page.session.advance(0);
+  page.say({{"do", "set"}, {"leaf_size", 4}});
+  const std::size_t columns = page.scene().json["statistics"].size();
+  const ViewerMessage frame = page.frame();
+  EXPECT_TRUE(frame.values<Pair>(44).empty() && frame.values<Pair>(45).empty()) << "the pair still touches";
+  EXPECT_EQ(frame.section(43).count, 3 * columns);
+}
+
+TEST(ViewerSettings, RefusesWhatIsOutOfRangeWithTheRange) {
+  TestPage page(three_balls());
+  const Json settings = page.scene().json["settings"];
+  const auto described = [&](const std::string& key) {
+    for (const Json& setting : settings) {
+      if (setting["key"] == key) return setting;
+    }
+    return Json();
+  };
+  const std::vector<std::pair<std::string, Json>> refused{
+      {"time_step", -1}, {"time_step", 0},       {"time_step", "x"}, {"max_level", 99},  {"leaf_size", -5},
+      {"leaf_size", 0.5}, {"objects", 100'001}, {"objects", 0},     {"tree_arity", 3},  {"max_time", 2}};
+  for (const auto& [key, value] : refused) {
+    const std::string failure = page.failure(Json{{"do", "set"}, {key, value}}.dump());
+    EXPECT_NE(failure.find("it must be " + described(key)["range"].get<std::string>()), std::string::npos)
+        << failure;
+  }
+  EXPECT_EQ(described("max_level")["range"], "a whole number from 0 to 32");
+  EXPECT_EQ(described("time_step")["unit"], "s");
+  EXPECT_EQ(described("bounding_volume")["words"].at(0), "aabb");
+  page.say({{"do", "set"}});
+  EXPECT_EQ(page.scene().json["time_step"], 0.01) << "the old value stays";
 }
 
 TEST(ViewerSettings, RepeatsObjectsApartAndCutsTheList) {
@@ -155,7 +240,7 @@ TEST(ViewerSettings, MemoryIsEstimatedGenerously) {
         show.objects.push_back({make_icosphere(frequency), {.self_collision = true}, MassSpringMotion{}});
         show.objects.front().options.octree.leaf_size = leaf_size;
         Settings settings;
-        settings.objects = count;
+        settings.restart.objects = count;
         const double estimate = estimated_memory(show, settings), before = allocated_bytes();
         TestPage page(std::move(show));
         Json command = options;

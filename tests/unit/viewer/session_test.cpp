@@ -46,6 +46,9 @@ TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
   EXPECT_EQ(first.json["playing"], true);
   for (std::uint32_t i = 0; i < 3; ++i) EXPECT_EQ(first.section(32, i).count, 92u);
   page.session.advance(0.01);
+  EXPECT_TRUE(page.drain().empty());  // the page has not drawn the first frame
+  page.say({{"do", "credit"}, {"frames", 0}});
+  page.session.advance(0.01);
   const ViewerMessage second = page.only(ViewerMessage::frame);
   EXPECT_EQ(second.json["step"], 1);
   EXPECT_EQ(second.json["time"], 0.01);
@@ -58,6 +61,7 @@ TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
 TEST(ViewerSession, SendsTheNewestStateOnlyAndKeepsLittleCredit) {
   TestPage page(three_balls());
   page.scene();
+  page.frame();
   for (int i = 0; i < 20; ++i) page.session.advance(0.01);
   EXPECT_EQ(page.frame().json["step"], 20);
   page.say({{"do", "credit"}, {"frames", 1000}});

@@ -17,6 +17,9 @@ using Row = std::array<float, 8>;
 using Ids = std::array<std::uint32_t, 8>;
 
 constexpr std::size_t most_elements = 1'000'000;
+/// Rows of statistics that are kept, for pages that take no frames for a while and for pages that come again.
+constexpr std::size_t most_rows = 4'000;
+constexpr std::size_t row_width = 1 + statistic_count;
 
 Row row_of(const std::array<float, 3>& first, float w, const std::array<float, 3>& second, float last) {
   return {first[0], first[1], first[2], w, second[0], second[1], second[2], last};
@@ -29,9 +32,32 @@ std::array<float, 3> floats(const Vec3d& v) {
 }  // namespace
 
 void FramePacker::forget() {
-  versions_.clear();
+  forget_positions();
   for (ObjectPairs* const pairs : {&touching_, &colliding_, &overlapping_}) pairs->clear();
+  sent_rows_ = 0;
+}
+
+void FramePacker::forget_positions() {
+  versions_.clear();
   paper_vertices_.forget();
+}
+
+void FramePacker::add_step(const Source& source) {
+  rows_.reserve(most_rows * row_width);
+  if (!rows_.empty() && source.step() == last_row_)
+    rows_.resize(rows_.size() - row_width);  // detected again after the step
+  else if (source.step() != last_row_ + 1)
+    rows_.clear();
+  if (rows_.size() == most_rows * row_width) {
+    constexpr std::size_t surplus = most_rows / 4;  // many at once, so that the cost per step is small
+    rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(surplus * row_width));
+    sent_rows_ -= std::min(sent_rows_, surplus);
+  }
+  sent_rows_ = std::min(sent_rows_, rows_.size() / row_width);
+  rows_.push_back(source.motion_seconds());
+  for_each_statistic(source.scene().result().stats,
+                     [&](const char*, double value) { rows_.push_back(value); });
+  last_row_ = source.step();
 }
 
 void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
@@ -56,6 +82,7 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   else
     paper_vertices_.forget();
   add_text(frame);
+  sent_rows_ = rows_.size() / row_width;
 }
 
 void FramePacker::add_positions(const FrameView& frame) {
@@ -234,12 +261,11 @@ void FramePacker::add_changes(Tag begin, Tag end, ObjectPairs& sent) {
   sent.swap(now_);
 }
 
+/// Adds the rows that the page does not have. The last one is that of this frame.
 void FramePacker::add_statistics(const FrameView& frame) {
-  const auto values = message_->add<double>(Tag::statistics, 1 + statistic_count);
-  values[0] = frame.source.motion_seconds();
-  std::size_t place = 0;
-  for_each_statistic(frame.source.scene().result().stats,
-                     [&](const char*, double value) { values[++place] = value; });
+  add_step(frame.source);
+  const auto unsent = std::span(rows_).subspan(sent_rows_ * row_width);
+  std::copy(unsent.begin(), unsent.end(), message_->add<double>(Tag::statistics, unsent.size()).begin());
 }
 
 void FramePacker::add_candidates(const FrameView& frame) {

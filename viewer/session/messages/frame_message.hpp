@@ -33,8 +33,12 @@ struct FrameView {
 /// Writes frame messages and tracks what the page already has.
 class FramePacker {
  public:
-  /// Call when the page has nothing yet or the scene changed.
+  /// Call when the page has nothing yet.
   void forget();
+  /// Call when the page keeps only events and statistics.
+  void forget_positions();
+  /// Call after each step of a simulation: the next frame contains the statistics of all steps.
+  void add_step(const Source& source);
   void pack(const FrameView& frame, MessageWriter& message);
 
  private:
@@ -76,6 +80,10 @@ class FramePacker {
   /// Pairs that the page knows: of contacts, of the narrow phase, and of volumes.
   ObjectPairs touching_, colliding_, overlapping_;
   ObjectPairs now_, changed_;
+  /// Statistics of the last steps, a row for each; the step of the last row; and how many the page has.
+  std::vector<double> rows_;
+  std::uint64_t last_row_ = 0;
+  std::size_t sent_rows_ = 0;
   std::vector<Omission> omissions_;
   std::vector<std::uint32_t> octree_levels_;
   std::vector<std::array<float, 8>> edges_;  // of the cells of one object

@@ -61,7 +61,7 @@ void add_place(const Stage& stage, JsonText& json) {
 
 /// The options that `set` takes.
 template <class Options>
-void add_settings(const Options& options, JsonText& json) {
+void add_values(const Options& options, JsonText& json) {
   for_each_leaf(
       [&](const auto& field, const auto& value) {
         if (!is_setting(field)) return;
@@ -71,32 +71,75 @@ void add_settings(const Options& options, JsonText& json) {
       options);
 }
 
-/// The words of each option that has words.
+template <class Words>
+void add_words(const Words& list, JsonText& json) {
+  json.member("kind", "word");
+  json.key("words");
+  json.begin_array();
+  for (const char* word : list) json.value(word);
+  json.end_array();
+}
+
+/// Describes an option that `set` takes: what the user may choose, and whether that restarts.
+template <class Struct, class Value>
+void add_description(const Field<Struct, Value>& field, bool restarts, JsonText& json) {
+  constexpr bool is_whole = std::is_integral_v<Value>;
+  json.begin_object();
+  json.member("key", field.key);
+  json.member("doc", field.doc);
+  json.member("unit", field.unit);
+  json.member("restarts", restarts);
+  if (field.has_truth_words()) {
+    add_words(field.truth_words, json);
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    json.member("kind", "truth");
+  } else if constexpr (std::is_same_v<Value, ContactKinds>) {
+    std::vector<const char*> sets;  // with all that they include
+    for (std::size_t i = 0; i < words<Value>.size(); ++i) {
+      if (const auto kinds = static_cast<Value>(i); with_included(kinds) == kinds)
+        sets.push_back(words<Value>[i]);
+    }
+    add_words(sets, json);
+  } else if constexpr (Worded<Value>) {
+    add_words(words<Value>, json);
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    json.member("kind", is_whole ? "whole" : "number");
+    json.member("range", text_of(field.range, is_whole));
+  } else {
+    json.member("kind", "cube");
+    json.member("range", range_of_root_cube);
+  }
+  json.end_object();
+}
+
 template <class Options>
-void add_words(JsonText& json) {
-  Options options;
+void add_descriptions(JsonText& json) {
+  const Options options;
   for_each_leaf(
-      [&](const auto& field, const auto& value) {
-        using Value = std::remove_cvref_t<decltype(value)>;
-        const auto add = [&](const auto& list) {
-          json.key(field.key);
-          json.begin_array();
-          for (const char* word : list) json.value(word);
-          json.end_array();
-        };
-        if (field.has_truth_words()) add(field.truth_words);
-        if constexpr (std::is_same_v<Value, ContactKinds>) {
-          std::vector<const char*> sets;  // with all that they include
-          for (std::size_t i = 0; i < words<Value>.size(); ++i) {
-            if (const auto kinds = static_cast<Value>(i); with_included(kinds) == kinds)
-              sets.push_back(words<Value>[i]);
-          }
-          add(sets);
-        } else if constexpr (Worded<Value> && !std::is_same_v<Value, ProximityListing>) {
-          add(words<Value>);
-        }
+      [&](const auto& field, const auto&) {
+        if (is_setting(field)) add_description(field, false, json);
       },
       options);
+}
+
+bool has_bodies(const SceneView& show) {
+  return std::any_of(show.objects.begin(), show.objects.end(),
+                     [](const ViewedObject& object) { return body_of(object) != nullptr; });
+}
+
+/// Without the integrator when nothing is integrated.
+void add_settings(Stage& stage, JsonText& json) {
+  json.key("settings");
+  json.begin_array();
+  add_descriptions<SceneOptions>(json);
+  add_descriptions<ObjectOctreeOptions>(json);
+  if (stage.simulation() != nullptr) {
+    for_each_restart_setting([&]<class Struct, class Value>(const Field<Struct, Value>& field, auto) {
+      if (!std::is_same_v<Value, Integrator> || has_bodies(stage.show()))
+        add_description(field, true, json);
+    });
+  }
+  json.end_array();
 }
 
 void add_options(const Stage& stage, JsonText& json) {
@@ -106,8 +149,8 @@ void add_options(const Stage& stage, JsonText& json) {
       show.objects.empty() ? ObjectOctreeOptions{} : show.objects.front().options.octree;
   json.member("time_step", show.simulation.time_step);
   json.member("seed", std::to_string(show.simulation.seed));
-  add_settings(scene, json);
-  add_settings(octree, json);
+  add_values(scene, json);
+  add_values(octree, json);
   json.key("integrator");
   const auto first_body = std::find_if(show.objects.begin(), show.objects.end(),
                                        [](const ViewedObject& object) { return body_of(object) != nullptr; });
@@ -115,15 +158,6 @@ void add_options(const Stage& stage, JsonText& json) {
     json.null();
   else
     json.value(word_of(body_of(*first_body)->springs.integrator));
-}
-
-void add_choices(JsonText& json) {
-  json.key("choices");
-  json.begin_object();
-  add_words<SceneOptions>(json);
-  add_words<ObjectOctreeOptions>(json);
-  add_words<MassSpringOptions>(json);
-  json.end_object();
 }
 
 /// The words of the kinds in frame messages, in the order of their numbers.
@@ -192,18 +226,19 @@ void add_events(Tag begin, Tag end, const Series::Events& events, MessageWriter&
 
 }  // namespace
 
-void pack_scene(Stage& stage, std::uint64_t generation, JsonText& json, MessageWriter& message) {
+void pack_scene(Stage& stage, SceneNumbers numbers, JsonText& json, MessageWriter& message) {
   const SceneView& show = stage.show();
   json.clear();
   json.begin_object();
   json.member("version", SUPPLE_VERSION);
   json.member("title", show.title);
-  json.member("generation", generation);
+  json.member("generation", numbers.generation);
+  json.member("run", numbers.run);
   add_abilities(stage, json);
   add_place(stage, json);
   add_objects(stage, json);
   add_options(stage, json);
-  add_choices(json);
+  add_settings(stage, json);
   add_kinds(json);
   add_column_names(stage, json);
   add_warnings(stage, json);

@@ -62,7 +62,7 @@ Player::Outcome Player::advance(Stage& stage, double seconds) {
 }
 
 Player::Outcome Player::advance_simulation(SimulationSource& simulation, double time_step, double seconds) {
-  const bool moves = playing_ || simulation.needs_steps();
+  const bool moves = (playing_ && is_watched_) || simulation.needs_steps();
   if (steps_ > 0) {
     --steps_;
     auto failure = simulation.take_step();
@@ -92,7 +92,7 @@ Player::Outcome Player::advance_recording(RecordingSource& recording, double sec
   // Reset first, so that a frame that cannot be read is tried only once.
   target_.reset();
   if (frame != recording.step()) recording.seek(frame);
-  if (playing_) outcome.wait = wait_for_frame(recording);
+  if (playing_ && is_watched_) outcome.wait = wait_for_frame(recording);
   return outcome;
 }
 
@@ -103,7 +103,7 @@ std::uint64_t Player::due_frame(RecordingSource& recording, double seconds) {
     const std::int64_t wanted = static_cast<std::int64_t>(now) + std::exchange(steps_, 0);
     return static_cast<std::uint64_t>(std::clamp(wanted, std::int64_t{0}, static_cast<std::int64_t>(last)));
   }
-  if (target_ || !playing_) return now;
+  if (target_ || !playing_ || !is_watched_) return now;
   if (now == last && !loop_) {
     playing_ = false;
     return now;

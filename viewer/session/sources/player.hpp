@@ -24,6 +24,8 @@ class Player {
   void seek(std::uint64_t frame);
   /// Call after the stage has been replaced.
   void restart();
+  /// While nobody watches, no time passes for what plays. Steps and seeks are still taken.
+  void set_watched(bool on) { is_watched_ = on; }
 
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
@@ -46,6 +48,7 @@ class Player {
   double wait_for_frame(const RecordingSource& recording) const;
 
   bool playing_ = false;
+  bool is_watched_ = true;
   double speed_ = 1;
   bool loop_ = false;
   std::int64_t steps_ = 0;                 // requested and not yet taken

@@ -33,6 +33,13 @@ void SimulationSource::add(const ViewedObject& object) {
   }
 }
 
+void SimulationSource::set_detection(const SceneView& show) {
+  std::vector<SceneObject> objects;
+  for (const ViewedObject& object : show.objects) objects.push_back({&object.mesh, object.options});
+  simulation_.set_detection(show.simulation.scene, objects);
+  is_detected_ = true;
+}
+
 /// Adds up the waves, earlier bends, and the current drag of the held vertices.
 void SimulationSource::move_swaying(std::size_t object, double seconds, std::span<Vec3d> positions) {
   const ViewedObject& shown = show_.objects[object];

@@ -28,6 +28,10 @@ class SimulationSource final : public Source {
   double motion_seconds() const override { return motion_seconds_; }
   const Simulation& simulation() const { return simulation_; }
 
+  /// Detects with the options of `show`, which has the same objects, from now on. Their motion keeps its
+  /// state. When it throws `Error`, nothing has changed.
+  void set_detection(const SceneView& show);
+
   /// Takes one step. If a body cannot move, returns the reason and leaves everything unchanged.
   std::optional<std::string> take_step();
 

@@ -1,6 +1,7 @@
 #include "sources/stage.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "sources/extent.hpp"
 
@@ -14,6 +15,12 @@ Stage::Stage(const SceneView& show, const Settings& settings, std::uint64_t fram
   }
   recording_ = std::make_unique<RecordingSource>(show_);
   if (frame > 0) recording_->seek(frame);
+}
+
+void Stage::set_detection(const SceneView& show, const Settings& settings) {
+  SceneView changed = arranged(show, settings);
+  simulation_->set_detection(changed);
+  show_ = std::move(changed);
 }
 
 const Source& Stage::source() const {

@@ -19,6 +19,10 @@ class Stage {
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
+  /// For a simulation: detects with the options of these settings from now on; `show` is the scene view of
+  /// the constructor. The motion keeps its state. When it throws `Error`, nothing has changed.
+  void set_detection(const SceneView& show, const Settings& settings);
+
   const SceneView& show() const { return show_; }
   const Center& center() const { return center_; }
   const Source& source() const;
