@@ -167,8 +167,121 @@ async function killedProgram(stage) {
   const { page, program } = await stage.view(nine);
   await program.stop("SIGKILL");
   await says(page, "Connection lost");
-  await page.getByRole("button", { name: "Reconnect" }).click();
+  await page.getByRole("button", { name: "Reconnect now" }).click();
   await says(page, "Connection lost");
+}
+
+/** A program that is started again at the same address shows up in the open page, which looks as before. */
+async function restartedProgram(stage) {
+  const token = ["--token-file", stage.file("token")];
+  const first = await stage.program(nine, ...token);
+  const port = ["--port", new URL(first.address).port];
+  const page = await stage.page();
+  await page.goto(first.address);
+  await hasFrame(page);
+  await page.getByRole("checkbox", { name: "Wireframe" }).check();
+  await page.getByRole("tab", { name: "Plots" }).click();
+  await until(page, () => supple.model.frame.text.step > 20);
+  for (const signal of ["SIGKILL", "SIGINT"]) {
+    await stage.programs.at(-1).stop(signal);
+    await until(page, () => supple.status.state === "ended");
+    const again = await stage.program(nine, ...token, ...port);
+    assert.equal(again.address, first.address);
+    await until(page, () => supple.status.state === "connected" && supple.model.frame?.text.step > 3);
+    assert.ok(await page.getByRole("checkbox", { name: "Wireframe" }).isChecked());
+    assert.equal(await page.evaluate(() => supple.model.history.frames[0]), 0, "the plots begin with the new run");
+  }
+  await stage.programs.at(-1).stop("SIGINT");
+  await stage.program(nine, ...port);
+  await says(page, "The program has another address now");
+}
+
+/** Layers, level, colours, camera and tab are those before the reload. */
+async function viewsSurviveAReload(stage) {
+  const { page } = await stage.view(balls(stage));
+  await page.getByRole("checkbox", { name: "Object octrees" }).check();
+  await page.getByRole("checkbox", { name: "Wireframe" }).check();
+  await until(page, () => document.querySelector('[aria-label="Octree level"]').options.length > 2);
+  await page.getByRole("combobox", { name: "Octree level" }).selectOption("1");
+  await page.getByLabel("Colour of left").fill("#ff00ff");
+  await page.getByRole("checkbox", { name: "Show right" }).uncheck();
+  await page.getByRole("tab", { name: "Settings" }).click();
+  await page.getByLabel("Point size").fill("11");
+  await page.getByRole("combobox", { name: "Axis view" }).selectOption("right");
+  await settled(page);
+  const state = () => page.evaluate(() => ({
+    layers: supple.model.layers, octree: supple.model.octree, colour: supple.model.objects[0].colour, visible: supple.model.objects[1].visible,
+    size: supple.model.pointSize, camera: Object.values(supple.camera()).flat().map((x) => (typeof x === "number" ? x.toFixed(3) : x)), boxes: supple.counts().boxes,
+  }));
+  const before = await state();
+  // Without the camera in the address, as after opening the printed address again.
+  const open = async (load) => {
+    await load();
+    await hasFrame(page);
+    await settled(page);
+    assert.deepEqual(await state(), before);
+    assert.equal(await page.getByRole("tab", { name: "Settings" }).getAttribute("aria-selected"), "true");
+    assert.ok(await page.getByRole("checkbox", { name: "Wireframe" }).isChecked());
+    assert.equal(await page.getByRole("combobox", { name: "Octree level" }).inputValue(), "1");
+    assert.equal(await page.getByLabel("Point size").inputValue(), "11");
+    assert.ok(!(await page.getByRole("checkbox", { name: "Show right" }).isChecked()));
+  };
+  await open(() => page.reload());
+  const address = page.url().replace(/#.*/, "");
+  await open(async () => {
+    await page.goto("about:blank");
+    await page.goto(address);
+  });
+  // What is stored may come from another version.
+  await page.evaluate(() => {
+    addEventListener("pagehide", () => {
+      const name = Object.keys(localStorage).find((key) => key.startsWith("supple-view"));
+      localStorage.setItem(name, JSON.stringify({ version: 1, camera: { position: "x" }, layers: 3, objects: { left: { colour: "url(x)", opacity: "1" } }, tab: "None" }));
+    });
+  });
+  await page.goto("about:blank");
+  await page.goto(address);
+  await hasFrame(page);
+  await page.getByRole("tab", { name: "Inspect", selected: true }).waitFor();
+}
+
+/** Whatever has the focus, except fields for text. */
+async function spacePlaysEverywhere(stage) {
+  const { page } = await stage.view(nine);
+  await page.getByRole("tab", { name: "Settings" }).click();
+  const places = [
+    page.getByRole("button", { name: "Frame all" }), page.getByRole("checkbox", { name: "Wireframe" }), page.getByLabel("Bounding volume"),
+    page.getByRole("tab", { name: "Settings" }), page.getByRole("combobox", { name: "Speed" }), page.getByText("More options"), page.getByRole("button", { name: /^fish 1/ }),
+    page.locator("canvas.view"),
+  ];
+  const checked = await page.getByRole("checkbox", { name: "Wireframe" }).isChecked();
+  const chosen = await page.evaluate(() => supple.model.scene.bounding_volume);
+  for (const place of places) {
+    const was = await page.evaluate(() => supple.playing);
+    await place.focus();
+    await page.keyboard.press("Space");
+    await until(page, (was) => supple.model.frame.text.playing === !was, was);
+  }
+  assert.equal(await page.getByRole("checkbox", { name: "Wireframe" }).isChecked(), checked);
+  assert.equal(await page.evaluate(() => supple.model.scene.bounding_volume), chosen);
+  assert.equal(await page.evaluate(() => supple.model.selection), null, "Space pressed a button");
+  const was = await page.evaluate(() => supple.playing);
+  const seed = page.getByRole("textbox", { name: "Seed" });
+  await seed.focus();
+  await page.keyboard.press("Space");
+  assert.equal(await page.evaluate(() => supple.playing), was);
+  // Enter does what Space does elsewhere.
+  await page.getByRole("checkbox", { name: "Wireframe" }).focus();
+  await page.keyboard.press("Enter");
+  assert.equal(await page.getByRole("checkbox", { name: "Wireframe" }).isChecked(), !checked);
+  // After a click on a button of the bar, the keys belong to the view; after a key they stay.
+  await page.getByRole("button", { name: "Light or dark" }).click();
+  assert.ok(await page.evaluate(() => document.activeElement.matches("canvas.view")));
+  await page.getByRole("radio", { name: "Why no contact?" }).click();
+  assert.ok(await page.evaluate(() => document.activeElement.matches("canvas.view")));
+  await page.getByRole("button", { name: "Light or dark" }).focus();
+  await page.keyboard.press("Enter");
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "Light or dark");
 }
 
 async function endedProgram(stage) {
@@ -271,7 +384,10 @@ export const tests = [
   ["keyboard alone", keyboardAlone],
   ["light and dark", lightAndDark],
   ["everything has a name", everythingHasAName],
+  ["views survive a reload", viewsSurviveAReload],
+  ["Space plays everywhere", spacePlaysEverywhere],
   ["a killed program", killedProgram],
+  ["a program that is started again", restartedProgram],
   ["a program that ends", endedProgram],
   ["a second page takes over, and gives back", secondPage],
   ["a malformed message", malformedMessage],

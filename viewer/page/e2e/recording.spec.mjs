@@ -1,7 +1,7 @@
 // A recording: play, seek, step, loop, jump between events.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { pause, runProgram, scenes, settled, step, until } from "./harness.mjs";
+import { runProgram, scenes, settled, step, until } from "./harness.mjs";
 
 const FRAMES = 60;
 
@@ -9,7 +9,7 @@ async function open(stage) {
   const file = stage.file("run.h5");
   await runProgram(stage.supple, ["simulate", join(scenes, "nine.toml"), "--steps", String(FRAMES), "--colliding-vertices", "--record", file, "--quiet"]);
   const { page } = await stage.view(file);
-  await pause(page);
+  assert.deepEqual(await page.evaluate(() => [supple.model.frame.text.step, supple.model.frame.text.playing]), [0, false]);
   await until(page, () => supple.model.history.frames.length > 0);
   return page;
 }

@@ -7,7 +7,8 @@ import type { EndReason, Transport, TransportEvents } from "./transport/transpor
 export type Status =
   | { state: "connecting" }
   | { state: "connected" }
-  | { state: "ended"; reason: EndReason | "malformed" | "too-large"; detail: string };
+  /** `returns`: the page connects again by itself. */
+  | { state: "ended"; reason: EndReason | "malformed" | "too-large"; detail: string; returns: boolean };
 
 interface ClientEvents {
   status: Status;
@@ -20,12 +21,17 @@ interface ClientEvents {
 /** Frames that may be in transit: one that is drawn, and the next. */
 const CREDIT = 2;
 
+/** Pauses before attempts to connect again; the last one repeats. */
+const PAUSES_MILLISECONDS = [250, 500, 1000, 2000, 5000];
+
 export class Client extends Emitter<ClientEvents> {
   status: Status = { state: "connecting" };
   private transport: Transport | null = null;
   private scene: SceneCounts | null = null;
   private credit = 0;
   private nextId = 1;
+  private attempts = 0;
+  private due: ReturnType<typeof setTimeout> | undefined;
   private readonly questions = new Map<number, { resolve(text: Record<string, unknown>): void; reject(error: Error): void }>();
 
   constructor(
@@ -39,16 +45,28 @@ export class Client extends Emitter<ClientEvents> {
   }
 
   connect(): void {
+    this.attempts = 0;
+    this.setStatus({ state: "connecting" });
+    this.attempt();
+  }
+
+  private attempt(): void {
+    clearTimeout(this.due);
     this.transport?.close();
     this.scene = null;
     this.credit = 0;
-    this.setStatus({ state: "connecting" });
     const transport: Transport = this.open({
-      open: () => this.setStatus({ state: "connected" }),
-      message: (buffer) => {
-        if (this.status.state !== "ended") this.receive(buffer);
+      open: () => {
+        if (transport !== this.transport) return;  // an earlier attempt
+        this.attempts = 0;
+        this.setStatus({ state: "connected" });
       },
-      end: (reason, detail) => this.end(reason, detail),
+      message: (buffer) => {
+        if (transport === this.transport && this.status.state !== "ended") this.receive(buffer);
+      },
+      end: (reason, detail) => {
+        if (transport === this.transport) this.end(reason, detail);
+      },
     });
     this.transport = transport;
   }
@@ -91,7 +109,7 @@ export class Client extends Emitter<ClientEvents> {
     });
   }
 
-  /** Call when a frame can be drawn. Allows the session to send the next frames. */
+  /** Call when a frame can be drawn. Lets the session send the next frames, and play once one was drawn. */
   giveCredit(): void {
     if (!this.scene || this.credit >= CREDIT || this.status.state !== "connected") return;
     this.send({ do: "credit", frames: CREDIT - this.credit });
@@ -145,11 +163,16 @@ export class Client extends Emitter<ClientEvents> {
   }
 
   private end(reason: EndReason | "malformed" | "too-large", detail: string): void {
-    if (this.status.state === "ended") return;  // the first reason is the most precise
     this.transport?.close();
     for (const question of this.questions.values()) question.reject(new Error("the session has ended"));
     this.questions.clear();
-    this.setStatus({ state: "ended", reason, detail });
+    const returns = reason === "lost" || reason === "program-ended";
+    // The reason of the first failure is more precise than those of later attempts.
+    if (this.status.state !== "ended" || !returns) this.setStatus({ state: "ended", reason, detail, returns });
+    if (!returns) return;
+    clearTimeout(this.due);
+    this.due = setTimeout(() => this.attempt(), PAUSES_MILLISECONDS[Math.min(this.attempts, PAUSES_MILLISECONDS.length - 1)]);
+    this.attempts += 1;
   }
 
   private setStatus(status: Status): void {

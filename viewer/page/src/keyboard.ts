@@ -6,17 +6,25 @@ import type { AxisView } from "./view/camera";
 const VIEWS: AxisView[] = ["front", "back", "right", "left", "top", "bottom"];
 const ARROWS: Record<string, [number, number]> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
+function isTextField(target: EventTarget | null): boolean {
+  if (target instanceof HTMLInputElement) return !["checkbox", "radio", "range", "color", "button"].includes(target.type);
+  return target instanceof HTMLTextAreaElement;
+}
+
+/** Whether Space plays or pauses: everywhere except in fields for text and in dialogs. Enter presses buttons. */
+const takesSpace = (event: KeyboardEvent): boolean =>
+  event.key === " " && !event.ctrlKey && !event.metaKey && !event.altKey && !isTextField(event.target) && !(event.target as Element).closest?.("dialog");
+
 /** Elements that handle these keys themselves. */
 function takesKeys(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
-  if (target.closest("dialog")) return true;
-  if (target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement) return true;
+  if (target.closest("dialog") || isTextField(target)) return true;
+  if (target instanceof HTMLSelectElement) return true;
   if (target instanceof HTMLInputElement) {
-    if (target.type === "checkbox" || target.type === "radio") return key === " " || key.startsWith("Arrow");
-    if (target.type === "range") return key.startsWith("Arrow") || ["Home", "End", "PageUp", "PageDown"].includes(key);
-    return true;
+    if (target.type === "checkbox" || target.type === "radio") return key.startsWith("Arrow");
+    return target.type !== "range" || key.startsWith("Arrow") || ["Home", "End", "PageUp", "PageDown"].includes(key);
   }
-  if (target instanceof HTMLButtonElement) return key === " " || key === "Enter";
+  if (target instanceof HTMLButtonElement || target.tagName === "SUMMARY") return key === "Enter";
   return target.getAttribute("role") === "grid" && (key.startsWith("Arrow") || key === "Home" || key === "End");
 }
 
@@ -44,7 +52,6 @@ function onShifted(app: App, key: string): boolean {
 function onPlain(app: App, key: string): boolean {
   const { player, view, model } = app;
   const actions: Record<string, () => void> = {
-    " ": () => player.togglePlay(),
     home: () => player.seek(0),
     end: () => player.seek(Infinity),
     ".": () => player.jump(1),
@@ -75,13 +82,25 @@ function onPlain(app: App, key: string): boolean {
 
 export function listenToKeys(app: App): void {
   document.addEventListener("keydown", (event) => {
+    if (takesSpace(event)) {
+      event.preventDefault();
+      if (!event.repeat) app.player.togglePlay();
+      return;
+    }
     if (event.ctrlKey || event.metaKey || event.defaultPrevented || takesKeys(event.target, event.key)) return;
     const key = event.key.toLowerCase();
     let done = false;
-    if (event.key in ARROWS) done = onArrow(app, event);
+    if (event.key === "Enter" && event.target instanceof HTMLInputElement && event.target.type === "checkbox") {
+      event.target.click();  // as Space does elsewhere
+      done = true;
+    } else if (event.key in ARROWS) done = onArrow(app, event);
     else if (event.altKey) return;
     else if (event.shiftKey && /^[a-z]$/.test(key)) done = onShifted(app, key);
     else done = onPlain(app, key);
     if (done) event.preventDefault();
+  });
+  // Firefox presses a button when the key goes up.
+  document.addEventListener("keyup", (event) => {
+    if (takesSpace(event)) event.preventDefault();
   });
 }

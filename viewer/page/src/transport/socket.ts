@@ -17,7 +17,12 @@ export function openSocket(events: TransportEvents): Transport {
   socket.onclose = (event) => {
     if (closed) return;
     closed = true;
-    events.end(REASONS[event.code] ?? "lost", event.reason);
+    const reason = REASONS[event.code];
+    if (reason) return events.end(reason, event.reason);
+    // A refused connection and a missing program look alike; only the page's own address tells which it is.
+    fetch(location.href, { method: "HEAD" }).then(
+      ({ status }) => events.end(status === 403 ? "other-token" : "lost", ""), () => events.end("lost", ""),
+    );
   };
   return {
     send(command) {
