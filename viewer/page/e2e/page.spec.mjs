@@ -234,7 +234,7 @@ async function viewsSurviveAReload(stage) {
   });
   // What is stored may come from another version.
   await page.evaluate(() => {
-    addEventListener("pagehide", () => {
+    for (const type of ["pagehide", "visibilitychange"]) addEventListener(type, () => {
       const name = Object.keys(localStorage).find((key) => key.startsWith("supple-view"));
       localStorage.setItem(name, JSON.stringify({ version: 1, camera: { position: "x" }, layers: 3, objects: { left: { colour: "url(x)", opacity: "1" } }, tab: "None" }));
     });
@@ -242,7 +242,7 @@ async function viewsSurviveAReload(stage) {
   await page.goto("about:blank");
   await page.goto(address);
   await hasFrame(page);
-  await page.getByRole("tab", { name: "Inspect", selected: true }).waitFor();
+  await page.getByRole("tab", { name: "Contacts", selected: true }).waitFor();
 }
 
 /** Whatever has the focus, except fields for text. */

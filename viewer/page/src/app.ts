@@ -251,7 +251,9 @@ export class App {
     if (!stored) return;
     showView(model, stored);
     const camera = cameraOf(stored);
-    if (camera && !location.hash.includes("camera=")) {
+    // A link has its own camera. A reloaded address may be older than what was stored.
+    const [navigation] = performance.getEntriesByType("navigation") as PerformanceNavigationTiming[];
+    if (camera && (navigation?.type === "reload" || !location.hash.includes("camera="))) {
       view.rig.state = camera;
       view.rig.save();  // the first frame takes the camera of the address
     }
@@ -273,7 +275,7 @@ export class App {
     const [first, last] = [this.arrivals[0], this.arrivals.at(-1)];
     const factor = first && last && last.at > first.at ? (1000 * (last.time - first.time)) / (last.at - first.at) : null;
     this.player.showRate(this.player.playing ? this.arrivals.length : 0, factor);
-    this.scenePanel.showCounts(this.view.layers.counts());
+    this.scenePanel.showCounts(this.view.layers.counts(), this.view.isFlat);
   }
 
   private showStatus(status: Status): void {
@@ -346,7 +348,7 @@ export class App {
 
   /** Copies the colours of the theme to elements that style sheets do not reach. */
   private paint(): void {
-    this.view.setBackground(colourOf("--ground"));
+    this.view.setColours(colourOf("--ground"), colourOf("--ink"));
     this.plots.rebuild();
   }
 
