@@ -118,9 +118,15 @@ void RaggedWriter::append(const Rows& rows, const Places& place_of) {
   end_.append_value(&rows_);
 }
 
+bool is_of_several_ranks(const RecordingHeader& header) {
+  return std::any_of(header.objects.begin(), header.objects.end(),
+                     [](const RecordedObject& object) { return object.elsewhere.has_value(); });
+}
+
 void check_header(const RecordingHeader& header) {
   for (std::size_t place = 0; place < header.objects.size(); ++place) {
     const RecordedObject& object = header.objects[place];
+    if (object.elsewhere) continue;
     const auto check = [&](const char* what, std::size_t i, std::span<const std::uint32_t> vertices) {
       for (const std::uint32_t vertex : vertices) {
         if (vertex >= object.rest_positions.size())
@@ -136,11 +142,24 @@ void check_header(const RecordingHeader& header) {
   }
 }
 
-Datasets::Datasets(hid_t file, const RecordingHeader& header) {
-  write_header(file, header);
+Datasets::Datasets(hid_t file, const std::filesystem::path& recording, const RecordingHeader& header,
+                   const RecordingRank& rank) {
+  if (rank.rank == 0)
+    write_header(file, header);
+  else
+    write_attribute(file, "/", "format", std::string(format_name_of_rank));
+  if (rank.rank != 0 || is_of_several_ranks(header)) write_attribute(file, "/", "run", rank.run);
   create_group(file, "objects");
-  for (std::size_t place = 0; place < header.objects.size(); ++place)
-    positions.push_back(write_object(file, place, header.objects[place]));
+  for (std::size_t place = 0; place < header.objects.size(); ++place) {
+    const RecordedObject& object = header.objects[place];
+    positions.emplace_back();
+    if (!object.elsewhere)
+      positions.back() = write_object(file, place, object);
+    else if (rank.rank == 0)
+      create_external_link(file, object_path(place),
+                           file_of_rank(recording, object.elsewhere->rank).filename().string());
+  }
+  if (rank.rank != 0) return;
   create_group(file, "events");
   for (const ListLayout& layout : list_layouts()) lists.emplace_back(file, layout);
   statistics = create_columns(file, statistics_group, columns_of_statistics(), frames_in_chunk);

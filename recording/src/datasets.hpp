@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -73,22 +74,27 @@ class RaggedWriter {
   std::uint64_t rows_ = 0;
 };
 
+/// Whether other ranks have some of the objects.
+bool is_of_several_ranks(const RecordingHeader& header);
+
 /// Throws `Error` when a triangle, an edge or a point uses a vertex that does not exist.
 void check_header(const RecordingHeader& header);
 
 /// The growing datasets of a file, and their unwritten rows.
 struct Datasets {
-  Datasets(hid_t file, const RecordingHeader& header);
+  /// A rank other than 0 writes only its objects.
+  Datasets(hid_t file, const std::filesystem::path& recording, const RecordingHeader& header,
+           const RecordingRank& rank);
 
   template <class Function>
   void for_each_column(Function function) {
     for (RaggedWriter& list : lists) list.for_each_column(function);
     for (ColumnWriter& column : statistics) function(column);
-    function(*time);
+    if (time) function(*time);
   }
 
-  std::vector<PositionsWriter> positions;
-  std::vector<RaggedWriter> lists;  ///< in the order of `for_each_list`
+  std::vector<std::optional<PositionsWriter>> positions;  ///< empty for objects that are elsewhere
+  std::vector<RaggedWriter> lists;                        ///< in the order of `for_each_list`
   std::vector<ColumnWriter> statistics;
   std::optional<ColumnWriter> time;
 };

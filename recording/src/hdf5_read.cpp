@@ -62,10 +62,18 @@ FileHandle open_for_reading(const std::string& path) {
   throw Error(path + ": is no recording (not an HDF5 file); make one with supple simulate --record");
 }
 
+struct OtherLinks {
+  bool may_link = false;  ///< from objects to other files
+  std::string name;       ///< of the first one that may not be
+};
+
 /// Stops at the first link that leads elsewhere, and copies its name.
 herr_t find_other_link(hid_t, const char* name, const H5L_info_t* link, void* found) {
+  auto& links = *static_cast<OtherLinks*>(found);
   if (link->type == H5L_TYPE_HARD) return 0;
-  *static_cast<std::string*>(found) = name;
+  const std::filesystem::path path(name);
+  if (links.may_link && link->type == H5L_TYPE_EXTERNAL && path.parent_path() == "objects") return 0;
+  links.name = name;
   return 1;
 }
 
@@ -93,14 +101,15 @@ bool is_stored_plainly(const DatasetHandle& dataset) {
 
 }  // namespace
 
-InputFile::InputFile(const std::string& path) : path_(path), file_(open_for_reading(path)) {
+InputFile::InputFile(const std::string& path, bool may_link) : path_(path), file_(open_for_reading(path)) {
   std::error_code error;
   size_ = std::filesystem::file_size(path, error);
   // A link could lead to any file of the user.
-  std::string other;
+  OtherLinks other{may_link, {}};
   if (H5Lvisit(id(), H5_INDEX_NAME, H5_ITER_NATIVE, find_other_link, &other) != 0)
-    fail(other, other.empty() ? "the file is damaged, copy it again or record again"
-                              : "is a soft or an external link; recordings have none, so record again");
+    fail(other.name, other.name.empty()
+                         ? "the file is damaged, copy it again or record again"
+                         : "is a soft or an external link, which recordings do not have here; record again");
 }
 
 DatasetHandle InputFile::open_dataset(const std::string& path, hid_t access) const {
@@ -139,6 +148,28 @@ std::size_t InputFile::count_links(const std::string& group) const {
   if (H5Gget_info_by_name(id(), group.c_str(), &info, H5P_DEFAULT) < 0)
     fail(group, "is missing; the file is damaged or not a whole recording, record again");
   return info.nlinks;
+}
+
+std::string InputFile::linked_file(const std::string& object) const {
+  H5L_info_t link{};
+  if (H5Lget_info(id(), object.c_str(), &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_EXTERNAL) return "";
+  std::vector<char> target(link.u.val_size);
+  const char *file = nullptr, *item = nullptr;
+  check(H5Lget_val(id(), object.c_str(), target.data(), target.size(), H5P_DEFAULT));
+  check(H5Lunpack_elink_val(target.data(), target.size(), nullptr, &file, &item));
+  const std::string name = file;
+  if (item != "/" + object || name.empty() || name.find('/') != std::string::npos)
+    fail(object, "is a link to another place than this object in a file of the same folder; record again");
+  return name;
+}
+
+bool is_file_of_rank(const std::string& path) {
+  try {
+    const InputFile file(path);
+    return file.has_text("/", "format") && file.text("/", "format") == format_name_of_rank;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 AttributeHandle InputFile::open_attribute(const std::string& group, const char* name) const {

@@ -15,8 +15,9 @@ namespace supple {
 /// type or shape, or cannot be read.
 class InputFile {
  public:
-  /// Throws an `Error` with the reason when HDF5 cannot open the file.
-  explicit InputFile(const std::string& path);
+  /// Throws an `Error` with the reason when HDF5 cannot open the file. Links to other files are errors,
+  /// except from objects when `may_link`.
+  explicit InputFile(const std::string& path, bool may_link = false);
 
   hid_t id() const { return file_.id(); }
   const std::string& path() const { return path_; }
@@ -26,6 +27,8 @@ class InputFile {
   bool has_item(const std::string& path) const;
   bool has_text(const std::string& group, const char* name) const;
   std::size_t count_links(const std::string& group) const;
+  /// The file of the same folder that has this object; empty when this file has it.
+  std::string linked_file(const std::string& object) const;
   double number(const std::string& group, const char* name) const;
   /// Fills `values`.
   void numbers(const std::string& group, const char* name, std::span<double> values) const;
@@ -48,6 +51,9 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
+/// Whether this is the file of a rank of a recording of several ranks.
+bool is_file_of_rank(const std::string& path);
+
 /// Reads rows of a numeric dataset.
 class ColumnReader {
  public:
@@ -57,6 +63,7 @@ class ColumnReader {
 
   std::uint64_t rows() const { return rows_; }
   const std::string& path() const { return path_; }
+  [[noreturn]] void fail(const std::string& what) const { file_->fail(path_, what); }
   /// Copies rows, which must exist. Small reads come from a cached block, so reading consecutive frames is
   /// fast.
   void read(std::uint64_t first, std::size_t count, std::byte* to);

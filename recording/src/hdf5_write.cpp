@@ -68,6 +68,11 @@ void create_group(hid_t file, const std::string& path) {
   const GroupHandle group(check(H5Gcreate2(file, path.c_str(), H5P_DEFAULT, properties.id(), H5P_DEFAULT)));
 }
 
+void create_external_link(hid_t file, const std::string& path, const std::string& other_file) {
+  check(H5Lcreate_external(other_file.c_str(), ("/" + path).c_str(), file, path.c_str(), H5P_DEFAULT,
+                           H5P_DEFAULT));
+}
+
 void write_attribute(hid_t file, const std::string& group, const char* name, double value) {
   write_attribute(file, group, name, H5T_NATIVE_DOUBLE, &value);
 }

@@ -26,6 +26,8 @@ Status check(Status status) {
 hid_t native_type(ScalarType type);
 
 void create_group(hid_t file, const std::string& path);
+/// A link to the item of the same path in another file of the same folder.
+void create_external_link(hid_t file, const std::string& path, const std::string& other_file);
 void write_attribute(hid_t file, const std::string& group, const char* name, double value);
 void write_attribute(hid_t file, const std::string& group, const char* name, std::span<const double> values);
 void write_attribute(hid_t file, const std::string& group, const char* name, std::uint32_t value);

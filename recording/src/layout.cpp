@@ -92,6 +92,12 @@ std::string attribute_in_version(const std::string& name, std::uint32_t version)
   return old_name(name, version, renamed);
 }
 
+std::filesystem::path file_of_rank(const std::filesystem::path& recording, std::uint32_t rank) {
+  if (rank == 0) return recording;
+  return recording.parent_path() /
+         (recording.stem().string() + ".rank" + std::to_string(rank) + recording.extension().string());
+}
+
 std::string column_in_version(const std::string& name, std::uint32_t version) {
   static constexpr Renamed renamed[] = {
       {"sort_and_events_seconds", "finish_seconds"},

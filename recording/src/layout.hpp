@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@
 namespace supple {
 
 inline constexpr const char* format_name = "supple recording";
+inline constexpr const char* format_name_of_rank = "supple recording, objects of a rank";
 inline constexpr std::uint32_t format_version = 4;
 /// The oldest supported version. Values that it lacks get their defaults.
 inline constexpr std::uint32_t oldest_version = 1;
@@ -103,5 +105,8 @@ inline constexpr const char* statistics_group = "statistics";  // one row per fr
 inline std::string object_path(std::size_t place) {
   return "objects/" + std::to_string(place);
 }
+
+/// The file of the objects of a rank: `run.rank1.h5` beside `run.h5`.
+std::filesystem::path file_of_rank(const std::filesystem::path& recording, std::uint32_t rank);
 
 }  // namespace supple

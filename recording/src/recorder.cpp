@@ -3,15 +3,18 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <new>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "commit_driver.hpp"
 #include "datasets.hpp"
+#include "hdf5_read.hpp"
 #include "supple/error.hpp"
 #include "supple/recording.hpp"
 #include "xdmf_file.hpp"
@@ -60,23 +63,33 @@ fs::path xdmf_path(const fs::path& path) {
   return result;
 }
 
+/// Removes the files of ranks that an earlier recording of this name had and the new one does not have.
+void remove_files_of_old_ranks(const fs::path& path, const std::set<std::uint32_t>& ranks) {
+  std::set<fs::path> used;
+  for (const std::uint32_t rank : ranks) used.insert(file_of_rank(path, rank).filename());
+  const std::string start = path.stem().string() + ".rank";
+  std::error_code error;
+  for (fs::directory_iterator entry(path.has_parent_path() ? path.parent_path() : ".", error), end;
+       !error && entry != end; entry.increment(error)) {
+    const fs::path name = entry->path().filename();
+    if (name.string().starts_with(start) && !used.contains(name) && is_file_of_rank(entry->path().string()))
+      unlink(entry->path().c_str());
+  }
+}
+
 }  // namespace
 
 class Recorder::Implementation {
  public:
-  Implementation(const fs::path& path, const RecordingHeader& header);
-  ~Implementation() {
-    try {
-      close();
-    } catch (const std::exception&) {
-    }
-  }
+  Implementation(const fs::path& path, const RecordingHeader& header, const RecordingRank& rank);
+  ~Implementation();
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
 
   void add(double time, std::span<const std::span<const Vec3d>> positions, const DetectResult& result);
   void flush();
   void close();
+  bool needs_flush() { return is_shared_ && datasets_ && flush_is_due(); }
 
  private:
   struct Object {
@@ -94,10 +107,14 @@ class Recorder::Implementation {
   std::size_t pending_bytes();
   void write_long_columns();
   void write_out();
+  void replace_old_files();
   void abandon();
   [[noreturn]] void stop();
 
-  fs::path path_;
+  RecordingRank rank_;
+  bool is_shared_;                       ///< by several ranks
+  std::set<std::uint32_t> other_ranks_;  ///< that have objects
+  fs::path path_, draft_;                ///< the draft is empty when the file has its name
   Places place_of_;
   std::vector<Object> objects_;
   FileHandle file_;
@@ -109,19 +126,42 @@ class Recorder::Implementation {
   bool closed_ = false;
 };
 
-Recorder::Implementation::Implementation(const fs::path& path, const RecordingHeader& header)
-    : path_(final_path(path)), place_of_(header.objects) {
+Recorder::Implementation::Implementation(const fs::path& path, const RecordingHeader& header,
+                                         const RecordingRank& rank)
+    : rank_(rank),
+      is_shared_(rank.rank != 0 || is_of_several_ranks(header)),
+      path_(file_of_rank(final_path(path), rank.rank)),
+      place_of_(header.objects) {
   check_header(header);
-  const fs::path xdmf = xdmf_path(path_);
   for (const RecordedObject& object : header.objects)
-    objects_.push_back({object.rest_positions.size(), object.options.is_static, {}});
+    objects_.push_back({object.elsewhere ? 0 : object.rest_positions.size(), object.options.is_static, {}});
+  for (const RecordedObject& object : header.objects) {
+    if (object.elsewhere) other_ranks_.insert(object.elsewhere->rank);
+  }
+  const fs::path xdmf = xdmf_path(path_);
+  if (rank.rank == 0) xdmf_.emplace(xdmf, path_, header);
   const QuietErrors quiet;
   create(header);
-  xdmf_.emplace(xdmf, path_, header);
+  if (!is_shared_) replace_old_files();
+}
+
+Recorder::Implementation::~Implementation() {
+  try {
+    if (is_shared_) {
+      // Other ranks may not have flushed the last frames.
+      const QuietErrors quiet;
+      abandon();
+    } else {
+      close();
+    }
+  } catch (const std::exception&) {
+  }
+  if (!draft_.empty()) unlink(draft_.c_str());
 }
 
 void Recorder::Implementation::create(const RecordingHeader& header) {
-  // The file has another name until its header is complete. Then it replaces the old file atomically.
+  // The file has another name until its header is complete. Then it replaces the old file atomically. Several
+  // ranks wait until the headers of all of them are complete: that is the first flush.
   const fs::path draft = path_.string() + ".part";
   const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) fail_to_create(path_, errno);
@@ -130,9 +170,9 @@ void Recorder::Implementation::create(const RecordingHeader& header) {
   try {
     file_ = create_committed_file(draft);
     if (!file_) throw Hdf5Failure();
-    datasets_.emplace(file_.id(), header);
+    datasets_.emplace(file_.id(), path_, header, rank_);
     flush_file(file_.id());
-    fs::rename(draft, path_, error);
+    draft_ = draft;
   } catch (const Hdf5Failure&) {
     error = std::error_code(file_ ? write_error(file_.id()) : ENOMEM, std::generic_category());
     if (!error) error = std::error_code(EIO, std::generic_category());
@@ -186,7 +226,7 @@ void Recorder::Implementation::add(double time, std::span<const std::span<const 
     append(time, positions, lists, result.stats);
     ++frames_;
     write_long_columns();
-    if (flush_is_due()) write_out();
+    if (!is_shared_ && flush_is_due()) write_out();
   } catch (const Hdf5Failure&) {
     stop();
   } catch (const std::bad_alloc&) {
@@ -199,10 +239,12 @@ void Recorder::Implementation::append(double time, std::span<const std::span<con
                                       std::span<const Rows> lists, const StepStats& stats) {
   for (std::size_t place = 0; place < objects_.size(); ++place) {
     Object& object = objects_[place];
-    if (object.is_static && frames_ > 0) continue;
+    if (!datasets_->positions[place] || (object.is_static && frames_ > 0)) continue;
     if (object.is_static) object.first_positions.assign(positions[place].begin(), positions[place].end());
-    datasets_->positions[place].append(positions[place]);
+    datasets_->positions[place]->append(positions[place]);
   }
+  check_writes(file_.id());
+  if (rank_.rank != 0) return;
   for (std::size_t i = 0; i < lists.size(); ++i) datasets_->lists[i].append(lists[i], place_of_);
   for (std::size_t i = 0; i < datasets_->statistics.size(); ++i)
     datasets_->statistics[i].append_value(reinterpret_cast<const std::byte*>(&stats) +
@@ -235,9 +277,24 @@ void Recorder::Implementation::write_long_columns() {
 void Recorder::Implementation::write_out() {
   datasets_->for_each_column([](ColumnWriter& column) { column.write_pending(); });
   flush_file(file_.id());
+  if (!draft_.empty()) replace_old_files();
   flushed_frames_ = frames_;
   last_flush_ = Clock::now();
   // The XDMF file refers to the data, so it is written last.
+  if (xdmf_) xdmf_->write();
+}
+
+void Recorder::Implementation::replace_old_files() {
+  std::error_code error;
+  fs::rename(draft_, path_, error);
+  if (error) {
+    abandon();
+    unlink(draft_.c_str());
+    fail_to_create(path_, error.value());
+  }
+  draft_.clear();
+  if (rank_.rank != 0) return;
+  remove_files_of_old_ranks(path_, other_ranks_);
   xdmf_->write();
 }
 
@@ -281,8 +338,9 @@ void Recorder::Implementation::close() {
   xdmf_.reset();
 }
 
-Recorder::Recorder(const std::filesystem::path& path, const RecordingHeader& header)
-    : implementation_(std::make_unique<Implementation>(path, header)) {}
+Recorder::Recorder(const std::filesystem::path& path, const RecordingHeader& header,
+                   const RecordingRank& rank)
+    : implementation_(std::make_unique<Implementation>(path, header, rank)) {}
 Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
@@ -293,6 +351,9 @@ void Recorder::add(double time, std::span<const std::span<const Vec3d>> position
 }
 void Recorder::flush() {
   implementation_->flush();
+}
+bool Recorder::needs_flush() const {
+  return implementation_->needs_flush();
 }
 void Recorder::close() {
   implementation_->close();

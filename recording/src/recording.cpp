@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <new>
 #include <stdexcept>
 #include <string_view>
@@ -94,6 +95,10 @@ void read_options(const InputFile& file, const std::string& group, std::uint32_t
 
 /// Returns the version.
 std::uint32_t check_format(const InputFile& file) {
+  if (file.has_text("/", "format") && file.text("/", "format") == format_name_of_rank)
+    throw Error(file.path() +
+                ": has only the objects of one rank; give the recording beside it, which has no "
+                "rank in its name");
   if (!file.has_text("/", "format") || file.text("/", "format") != format_name)
     throw Error(file.path() + ": is an HDF5 file, but no recording; make one with supple simulate --record");
   const std::uint32_t version = file.count("/", "version");
@@ -139,14 +144,33 @@ RecordedObject read_object(const InputFile& file, std::uint32_t version, std::si
   return object;
 }
 
-RecordingHeader read_header(const InputFile& file, std::uint32_t version) {
+/// Opens the file of a rank, which is beside the recording.
+InputFile open_file_of_rank(const InputFile& recording, const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path path = fs::path(recording.path()).replace_filename(name);
+  if (!fs::exists(path, error) && fs::is_symlink(recording.path(), error))
+    path = fs::canonical(recording.path(), error).replace_filename(name);
+  if (!fs::exists(path, error))
+    throw Error(path.string() + ": is missing, and has objects of " + recording.path() +
+                "; put all files of the recording into one folder");
+  InputFile file(path.string());
+  if (!file.has_text("/", "format") || file.text("/", "format") != format_name_of_rank ||
+      file.count("/", "run") != recording.count("/", "run"))
+    throw Error(path.string() + ": does not belong to " + recording.path() +
+                ", but to another run; put the files of one run into one folder, or record again");
+  return file;
+}
+
+template <class FileOf>
+RecordingHeader read_header(const InputFile& file, std::uint32_t version, FileOf file_of) {
   RecordingHeader header;
   header.time_step = file.number("/", "time_step");
   read_options(file, "/", version, header.scene);
   header.scene_file = file.text_dataset("scene_file");
   const std::size_t count = file.count_links("objects");
   for (std::size_t place = 0; place < count; ++place)
-    header.objects.push_back(read_object(file, version, place));
+    header.objects.push_back(read_object(file_of(place), version, place));
   return header;
 }
 
@@ -179,14 +203,16 @@ class Recording::Implementation {
   const std::string& path() const { return file_.path(); }
 
  private:
+  const InputFile& file_of(std::size_t object);
   void check_frame(std::uint64_t number) const;
   void read_lists(std::uint64_t number, RecordedFrame& frame, bool with_records);
   StepStats stats(std::uint64_t frame);
 
   InputFile file_;
   std::uint32_t version_;
+  ColumnReader time_;  ///< opened before the files of ranks, which have all frames that it has
+  std::map<std::string, InputFile> files_of_ranks_;
   RecordingHeader header_;
-  ColumnReader time_;
   std::vector<RaggedReader> lists_;  ///< in the order of `for_each_list`
   std::vector<std::optional<ColumnReader>>
       statistics_;  ///< in the order of `StepStats`; empty if the file lacks it
@@ -194,15 +220,16 @@ class Recording::Implementation {
 };
 
 Recording::Implementation::Implementation(const std::string& path)
-    : file_(path),
+    : file_(path, true),
       version_(check_format(file_)),
-      header_(read_header(file_, version_)),
-      time_(file_, "time", ScalarType::float64, {}) {
+      time_(file_, "time", ScalarType::float64, {}),
+      header_(read_header(file_, version_,
+                          [&](std::size_t object) -> const InputFile& { return file_of(object); })) {
   for (const ListLayout& layout : list_layouts()) lists_.emplace_back(file_, version_, layout, frame_count());
   const auto check_frames = [this](const ColumnReader& column, std::uint64_t needed) {
     if (column.rows() < needed)
-      file_.fail(column.path(), "has " + std::to_string(column.rows()) + " frames, the recording has " +
-                                    std::to_string(frame_count()) + damaged);
+      column.fail("has " + std::to_string(column.rows()) + " frames, the recording has " +
+                  std::to_string(frame_count()) + damaged);
   };
   for (const Column& column : columns_of_statistics()) {
     const std::string dataset =
@@ -214,11 +241,19 @@ Recording::Implementation::Implementation(const std::string& path)
   }
   for (std::size_t place = 0; place < header_.objects.size(); ++place) {
     const RecordedObject& object = header_.objects[place];
-    positions_.emplace_back(file_, object_path(place) + "/positions", ScalarType::float64,
+    positions_.emplace_back(file_of(place), object_path(place) + "/positions", ScalarType::float64,
                             std::vector<hsize_t>{object.rest_positions.size(), 3});
     check_frames(positions_.back(),
                  object.options.is_static ? std::min<std::uint64_t>(frame_count(), 1) : frame_count());
   }
+}
+
+const InputFile& Recording::Implementation::file_of(std::size_t object) {
+  const std::string name = file_.linked_file(object_path(object));
+  if (name.empty()) return file_;
+  const auto found = files_of_ranks_.find(name);
+  if (found != files_of_ranks_.end()) return found->second;
+  return files_of_ranks_.emplace(name, open_file_of_rank(file_, name)).first->second;
 }
 
 void Recording::Implementation::check_frame(std::uint64_t number) const {

@@ -72,13 +72,15 @@ std::string escaped(std::string_view text) {
 XdmfFile::XdmfFile(const std::filesystem::path& path, const std::filesystem::path& recording,
                    const RecordingHeader& header)
     : path_(path) {
-  const std::string file = escaped(recording.filename().string());
   for (std::size_t place = 0; place < header.objects.size(); ++place) {
     const RecordedObject& object = header.objects[place];
-    if (object.triangles.empty()) continue;
-    const std::string triangles = std::to_string(object.triangles.size());
-    const std::string vertices = std::to_string(object.rest_positions.size());
-    const std::string source = file + ":/" + object_path(place);
+    const RecordedElsewhere where = object.elsewhere.value_or(
+        RecordedElsewhere{0, object.rest_positions.size(), object.triangles.size()});
+    if (where.triangles == 0) continue;
+    const std::string triangles = std::to_string(where.triangles);
+    const std::string vertices = std::to_string(where.vertices);
+    const std::string source =
+        escaped(file_of_rank(recording, where.rank).filename().string()) + ":/" + object_path(place);
     Grid grid;
     grid.before_frame = "<Grid Name=\"" + escaped(object.options.name) +
                         "\" GridType=\"Uniform\">\n<Topology TopologyType=\"Triangle\" NumberOfElements=\"" +
@@ -93,10 +95,6 @@ XdmfFile::XdmfFile(const std::filesystem::path& path, const std::filesystem::pat
     grid.moves = !object.options.is_static;
     grids_.push_back(std::move(grid));
   }
-  descriptor_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail_to_write(path);
-  text_ = opening_tags;
-  write_text();
 }
 
 XdmfFile::~XdmfFile() {
@@ -104,6 +102,12 @@ XdmfFile::~XdmfFile() {
 }
 
 void XdmfFile::write() {
+  if (descriptor_ < 0) {
+    descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail_to_write(path_);
+    text_ = opening_tags;
+    write_text();
+  }
   while (!pending_.empty()) {
     text_.clear();
     std::size_t count = 0;

@@ -13,7 +13,6 @@ namespace supple {
 /// It is complete XML after every system call, each of which overwrites the closing tags with new frames.
 class XdmfFile {
  public:
-  /// Replaces the file. Throws `Error` when it cannot be written.
   XdmfFile(const std::filesystem::path& path, const std::filesystem::path& recording,
            const RecordingHeader& header);
   ~XdmfFile();
@@ -21,7 +20,8 @@ class XdmfFile {
   XdmfFile& operator=(const XdmfFile&) = delete;
 
   void add_frame(double time) { pending_.push_back(time); }
-  /// Writes the frames since the last call. Throws `Error`.
+  /// Writes the frames since the last call. The first call replaces the file. Throws `Error` when it cannot
+  /// be written.
   void write();
 
  private:

@@ -472,11 +472,13 @@ CONTRACTS = {
     'PositionsView::size':
         'See `PositionsView::size` in supple/views.hpp.',
     'Recorder::add':
-        'Adds a frame: the positions of each object, in the order of the header. Throws `Error` when a size differs, or when the disk is full; flushed frames stay readable. When memory runs out in a function of the recorder, the recording ends after the flushed frames, too.',
+        'Adds a frame: the positions of each object, in the order of the header. Throws `Error` when a size differs, or when the disk is full; flushed frames stay readable. When memory runs out in a function of the recorder, the recording ends after the flushed frames, too. Objects that are elsewhere have no positions; only rank 0 reads the time and the result.',
     'Recorder::close':
         'Flushes and closes both files. Throws `Error` when the disk is full.',
     'Recorder::flush':
         'Writes all frames to the file. Throws `Error` when the disk is full.',
+    'Recorder::needs_flush':
+        'Whether frames of several ranks have waited long enough for a call of `flush`. One process need not ask.',
     'Recording::frame':
         'Throws `Error` when there is no such frame, or its data refer to objects, triangles, vertices or rows that do not exist. Sequential reading is fastest.',
     'Recording::frame_count':

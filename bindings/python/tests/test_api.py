@@ -281,6 +281,8 @@ LEFT_OUT = {
     "Scene::set_user_data": "a dict of Python by object",
     "BroadPhase::validate": "for tests of C++",
     "SceneInspector::validate": "for tests of C++",
+    "RecordedElsewhere": "Python records in one process",
+    "RecordingRank": "as RecordedElsewhere",
     "WaveMotion": "a motion of the paper's scenes; scene files have it",
     "apply_wave_motion": "as WaveMotion",
 }

@@ -15,12 +15,21 @@
 
 namespace supple {
 
+/// The rank that records an object, and the size of the object.
+struct RecordedElsewhere {
+  std::uint32_t rank = 0;
+  std::uint64_t vertices = 0, triangles = 0;
+};
+
 /// The constant data of an object. An object with `is_static` must not move while it is recorded.
 struct RecordedObject {
   ObjectId id;  ///< its id in the results
   ObjectOptions options{};
   std::vector<Vec3d> rest_positions{};
   std::vector<Triangle> triangles{};
+  /// Set it for a `Recorder` when another rank records the object. The recorder then reads only the id and
+  /// the options `name` and `is_static`. A `Recording` leaves it empty.
+  std::optional<RecordedElsewhere> elsewhere{};
 };
 
 /// The constant data of a recording.
@@ -29,6 +38,12 @@ struct RecordingHeader {
   double time_step = 0.01;   ///< s
   SceneOptions scene{};      ///< without the number of threads
   std::string scene_file{};  ///< text of the simulated scene file; empty when there is none
+};
+
+/// One of several processes that write a recording together.
+struct RecordingRank {
+  std::uint32_t rank = 0;
+  std::uint32_t run = 0;  ///< a number that all ranks have; choose one at random for each run
 };
 
 /// The object pairs that begin and end in a frame, as in `PairEvents`.
@@ -67,22 +82,35 @@ struct RecordedFrame {
 /// the recorder never overwrites data that the file refers to. `add` flushes once per second, when 32 MiB
 /// wait in memory, and when the number of frames has grown by more than an eighth since the last flush. The
 /// destructor flushes at the end.
+///
+/// Several ranks can write one recording together. Rank 0 writes the recording itself. Each other rank writes
+/// the objects that it has to a file beside it, `run.rank1.h5` of rank 1, to which the recording links. Then
+/// only `flush` and `close` write frames, and only frames that all ranks have flushed are part of the
+/// recording. So rank 0 must call them when the others have returned:
+///
+///  1. All ranks make their recorders.
+///  2. The others call `flush`, then rank 0 does. The first flush replaces the files of an earlier recording.
+///  3. All ranks call `add` for each frame. When `needs_flush` is true on rank 0, they flush as in step 2.
+///  4. The others call `close`, then rank 0 does.
 class Recorder {
  public:
   /// Replaces existing files once the new recording has its header. Throws `Error` when the files cannot be
-  /// written, or the header is inconsistent.
-  Recorder(const std::filesystem::path& path, const RecordingHeader& header);
-  /// Closes without throwing. Call `close` to see errors.
+  /// written, or the header is inconsistent. All ranks give the same path, and all objects in the same order.
+  Recorder(const std::filesystem::path& path, const RecordingHeader& header, const RecordingRank& rank = {});
+  /// Closes without throwing. Call `close` to see errors. A rank of several drops what it has not flushed.
   ~Recorder();
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
 
   /// Adds a frame: the positions of each object, in the order of the header. Throws `Error` when a size
   /// differs, or when the disk is full; flushed frames stay readable. When memory runs out in a function of
-  /// the recorder, the recording ends after the flushed frames, too.
+  /// the recorder, the recording ends after the flushed frames, too. Objects that are elsewhere have no
+  /// positions; only rank 0 reads the time and the result.
   void add(double time, std::span<const std::span<const Vec3d>> positions, const DetectResult& result);
   /// Writes all frames to the file. Throws `Error` when the disk is full.
   void flush();
+  /// Whether frames of several ranks have waited long enough for a call of `flush`. One process need not ask.
+  bool needs_flush() const;
   /// Flushes and closes both files. Throws `Error` when the disk is full.
   void close();
 
@@ -91,13 +119,14 @@ class Recorder {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reads a recording. When the file is still being written, it has the frames that were flushed before it was
-/// opened.
-/// Calls on one recording must not overlap, not even calls of const functions, nor overlap other uses of HDF5
-/// unless HDF5 was built for threads.
+/// Reads a recording, of several ranks with the files to which it links. When the file is still being
+/// written, it has the frames that were flushed before it was opened. Calls on one recording must not
+/// overlap, not even calls of const functions, nor overlap other uses of HDF5 unless HDF5 was built for
+/// threads.
 class Recording {
  public:
-  /// Throws `Error` when the file is not a recording, has an unknown version, or is damaged.
+  /// Throws `Error` when the file is not a recording, has an unknown version, or is damaged, or when a file
+  /// of a rank is missing, damaged or of another run.
   explicit Recording(const std::filesystem::path& path);
   ~Recording();
   Recording(Recording&&) noexcept;
