@@ -107,6 +107,7 @@ int run_detect(const DetectOptions& given, Ranks& ranks) {
   const char* const noun = continuous ? "step" : "frame";
   std::optional<Reports> reports;
   ranks.together([&] { reports.emplace(options, input, *objects, noun); });
+  objects->release_meshes(input);
   std::uint64_t done = 0;
   const auto end_early = [&](const Interruption& end) {
     reports->finish(true);

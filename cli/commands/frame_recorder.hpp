@@ -1,31 +1,38 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "inputs/inputs.hpp"
+#include "moving/ranks.hpp"
 #include "supple/recording.hpp"
 
 namespace supple::cli {
 
-/// Records a simulation frame by frame.
+/// Records a simulation frame by frame. Each rank writes the objects that it moves. All calls but `add` are
+/// collective.
 class FrameRecorder {
  public:
-  /// `objects` are those of the input, in its order. Writes no file when the name is empty.
-  FrameRecorder(const std::string& file_name, std::vector<ObjectId> objects, const Input& input);
+  FrameRecorder(Ranks& ranks, const MovingObjects& objects) : ranks_(ranks), objects_(objects) {}
 
-  /// Adds a frame: the positions of each object at this time, and the result of the detection.
-  void add(double time, const std::function<std::span<const Vec3d>(ObjectId)>& positions,
-           const DetectResult& result);
+  /// Creates the files.
+  void start(const std::string& file_name, const Input& input);
+  /// Adds a frame: where the objects are now, and the result of the detection.
+  void add(const DetectResult& result);
+  void flush_if_due();
   void close();
 
  private:
-  std::vector<ObjectId> objects_;
+  void flush();
+
+  Ranks& ranks_;
+  const MovingObjects& objects_;
+  bool is_on_ = false;  ///< on all ranks
+  std::vector<ObjectId> ids_;
   std::vector<std::span<const Vec3d>> positions_;
-  std::optional<Recorder> recorder_;
+  std::optional<Recorder> recorder_;  ///< on ranks that have objects, and on rank 0
 };
 
 }  // namespace supple::cli

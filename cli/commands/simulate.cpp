@@ -53,12 +53,6 @@ std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
   return static_cast<std::uint64_t>(is_whole ? whole : std::ceil(steps));
 }
 
-std::vector<ObjectId> ids_of(const Input& input) {
-  std::vector<ObjectId> ids(input.objects.size());
-  for (std::uint32_t i = 0; i < ids.size(); ++i) ids[i].index = i;
-  return ids;
-}
-
 /// A running simulation and its reports.
 class Run {
  public:
@@ -70,9 +64,10 @@ class Run {
         ranks_(ranks),
         objects_(objects),
         reports_(options, input, objects, "frame"),
-        recorder_(options.record, ids_of(input), input),
+        recorder_(ranks, objects),
         energies_(input) {}
 
+  void start_recording(const Input& input) { recorder_.start(options_.record, input); }
   /// Runs until the last step, an interruption or a blow-up. Returns the exit status.
   int go();
 
@@ -105,7 +100,9 @@ int Run::go() {
   if (const auto warning = objects_.warning_of_long_steps(); warning && ranks_.rank() == 0)
     fmt::print(stderr, "supple: warning: {}: {}\n", one_line(options_.input), one_line(*warning));
   Interruption interruption(options_.limits.seconds, [this](const Interruption& end) {
-    if (ranks_.size() == 1) exit_now(end_early(end, Moment::in_a_step));
+    if (ranks_.size() > 1) return;
+    recorder_.close();
+    exit_now(end_early(end, Moment::in_a_step));
   });
   start_ = Clock::now();
   const bool is_whole =
@@ -113,6 +110,7 @@ int Run::go() {
   const bool stable = !is_whole || take_steps(interruption);
   interruption.end();
   energies_.end(objects_.energies());
+  recorder_.close();
   int status = exit_unusable;
   ranks_.together([&] {
     if (stable && frames_ < steps_ + 1) {
@@ -156,17 +154,16 @@ bool Run::add_frame(Interruption& interruption, const DetectResult& result) {
   if (frame.verify && interruption.token().stop_requested()) return false;
   const auto hold = interruption.hold();
   ranks_.together([&] {
-    recorder_.add(
-        objects_.time(), [this](ObjectId object) { return objects_.positions(object); }, result);
+    recorder_.add(result);
     reports_.add(frame);
   });
+  recorder_.flush_if_due();
   frames_ = number + 1;
   time_ = objects_.time();
   return true;
 }
 
 void Run::finish(bool was_ended) {
-  recorder_.close();
   if (reports_.has_tables() && frames_ > 0) {
     const double seconds = std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 0.0);
     const auto steps = static_cast<double>(frames_ - 1);
@@ -192,8 +189,7 @@ int Run::end_early(const Interruption& interruption, Moment moment) {
 }  // namespace
 
 int run_simulate(const SimulateOptions& given, Ranks& ranks) {
-  SimulateOptions options = options_of_rank(given, ranks);
-  if (ranks.rank() != 0) options.record.clear();
+  const SimulateOptions options = options_of_rank(given, ranks);
   Input input;
   ranks.together([&] {
     input = read_input(options);
@@ -210,9 +206,11 @@ int run_simulate(const SimulateOptions& given, Ranks& ranks) {
     ranks.check(options, input);
   });
   if (ranks.size() == 1) warn_of_missing_threads(options.scene.threads);
-  const std::unique_ptr<MovingObjects> objects = ranks.move(input, !given.record.empty());
+  const std::unique_ptr<MovingObjects> objects = ranks.move(input, !options.record.empty());
   std::optional<Run> run;
   ranks.together([&] { run.emplace(options, input, ranks, *objects); });
+  run->start_recording(input);
+  objects->release_meshes(input);
   return run->go();
 }
 

@@ -41,9 +41,13 @@ class MovingObjects {
   virtual std::vector<BodyEnergy> energies();
   /// See `viewer::warning_of_long_steps`.
   virtual std::optional<std::string> warning_of_long_steps();
-  /// Where an object is now. Of several ranks, only rank 0 knows it: of objects that touch themselves, or of
-  /// all when a recording needs them.
+  /// Where an object is now. When there are several ranks, the rank that moves the object knows it, and rank
+  /// 0 knows it of objects that touch themselves.
   virtual std::span<const Vec3d> positions(ObjectId object) const { return simulation_.positions(object); }
+  /// The rank that moves an object; 0 when all ranks do.
+  virtual int rank_of(ObjectId) const { return 0; }
+  /// Call it when reports and recordings have begun: they do not need the meshes of most objects again.
+  virtual void release_meshes(Input&) {}
   virtual int rank_count() const { return 1; }
 
   std::uint64_t step_count() const { return simulation_.step_count(); }

@@ -23,11 +23,21 @@ class Ranks {
   virtual int size() const { return 1; }
   /// Does the work on each rank. When it throws on one of them, the call throws on all of them.
   virtual void together(const std::function<void()>& work) { work(); }
+  /// Does the work on the other ranks, then on rank 0, which finds it done.
+  void others_first(const std::function<void()>& work) {
+    together([&] {
+      if (rank() != 0) work();
+    });
+    together([&] {
+      if (rank() == 0) work();
+    });
+  }
   /// The largest of the numbers of all ranks.
   virtual int largest(int number) { return number; }
   /// Throws `Error` when several ranks cannot do what the options or the input want.
   virtual void check(const DetectionOptions&, const Input&) {}
-  /// Ranks other than 0 lose the meshes of the input. `records` says that a recording needs all positions.
+  /// Ranks other than 0 lose the meshes of the input. `records` says that a recording needs those of objects
+  /// that the rank moves.
   virtual std::unique_ptr<MovingObjects> move(Input& input, [[maybe_unused]] bool records) {
     return std::make_unique<MovingObjects>(input);
   }

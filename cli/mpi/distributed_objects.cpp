@@ -96,7 +96,7 @@ void DistributedObjects::add_objects(Input& input) {
     const ObjectId id = moves_all_ ? add_object(simulation_, object) : add_positions(simulation_, object);
     if (is_mine(i)) scene_.add(ObjectId{i}, simulation_.positions(id), object.mesh.triangles, options);
     own.objects.push_back({{}, object.options, object.motion});
-    if (ranks_.rank() != 0) object.mesh = {};
+    if (ranks_.rank() != 0 && !(records_ && rank_of({i}) == ranks_.rank())) object.mesh = {};
   }
   before_.resize(own.objects.size());
   turns_ = std::make_unique<HalfTurns>(simulation_, own);
@@ -151,11 +151,10 @@ const DetectResult& DistributedObjects::find_contacts() {
   return result_;
 }
 
-/// Rank 0 gets the positions of objects that move, and that touch themselves or are recorded.
+/// Rank 0 gets the positions of objects of other ranks that move and touch themselves.
 void DistributedObjects::fetch_positions() {
+  if (moves_all_) return;
   std::vector<std::uint8_t> is_wanted(input_.objects.size(), 0);
-  for (std::size_t i = 0; i < is_wanted.size() && records_; ++i)
-    is_wanted[i] = input_.objects[i].motion ? 1 : 0;
   const auto want = [&](std::span<const ContactGroup> groups) {
     for (const ContactGroup& group : groups) {
       if (group.a == group.b && input_.objects[group.a.index].motion) is_wanted[group.a.index] = 1;
@@ -165,16 +164,13 @@ void DistributedObjects::fetch_positions() {
   want(result_.continuous_groups);
   want(result_.proximity_groups);
   MPI_Bcast(is_wanted.data(), static_cast<int>(is_wanted.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
-  for (int owner = 0; owner < ranks_.size(); ++owner) {
+  for (int owner = 1; owner < ranks_.size(); ++owner) {
     for (std::uint32_t i = first_of(owner); i < first_of(owner + 1); ++i) {
       if (is_wanted[i] == 0) continue;
       if (is_mine(i)) {
         const std::span<const Vec3d> positions = simulation_.positions(local(i));
-        if (owner == 0)
-          fetched_[i].assign(positions.begin(), positions.end());
-        else
-          MPI_Send(positions.data(), static_cast<int>(3 * positions.size()), MPI_DOUBLE, 0, tag_of_positions,
-                   MPI_COMM_WORLD);
+        MPI_Send(positions.data(), static_cast<int>(3 * positions.size()), MPI_DOUBLE, 0, tag_of_positions,
+                 MPI_COMM_WORLD);
       } else if (ranks_.rank() == 0) {
         fetched_[i].resize(input_.objects[i].mesh.positions.size());
         MPI_Recv(fetched_[i].data(), static_cast<int>(3 * fetched_[i].size()), MPI_DOUBLE, owner,
@@ -184,7 +180,22 @@ void DistributedObjects::fetch_positions() {
   }
 }
 
+int DistributedObjects::rank_of(ObjectId object) const {
+  if (moves_all_) return 0;
+  return static_cast<int>(std::ranges::upper_bound(firsts_, object.index) - firsts_.begin()) - 1;
+}
+
+/// Rank 0 reports on contacts of objects with themselves, and on what a single object lacks.
+void DistributedObjects::release_meshes(Input& input) {
+  if (input.objects.size() == 1 && ranks_.rank() == 0) return;
+  for (InputObject& object : input.objects) {
+    if (ranks_.rank() == 0 && object.options.self_collision) continue;
+    object.mesh = {std::move(object.mesh.name), {}, {}};
+  }
+}
+
 std::span<const Vec3d> DistributedObjects::positions(ObjectId object) const {
+  if (moves(object.index)) return simulation_.positions(local(object.index));
   const InputObject& found = input_.objects[object.index];
   return found.motion ? fetched_[object.index] : found.mesh.positions;
 }

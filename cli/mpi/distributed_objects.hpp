@@ -27,6 +27,8 @@ class DistributedObjects : public MovingObjects {
   std::vector<BodyEnergy> energies() override;
   std::optional<std::string> warning_of_long_steps() override;
   std::span<const Vec3d> positions(ObjectId object) const override;
+  int rank_of(ObjectId object) const override;
+  void release_meshes(Input& input) override;
   int rank_count() const override { return ranks_.size(); }
 
  private:
@@ -54,7 +56,7 @@ class DistributedObjects : public MovingObjects {
   DetectResult result_;
   std::stop_source no_detection_;            ///< of the simulation
   std::vector<std::vector<Vec3d>> before_;   ///< of this rank's objects that move on paths
-  std::vector<std::vector<Vec3d>> fetched_;  ///< on rank 0, by object
+  std::vector<std::vector<Vec3d>> fetched_;  ///< on rank 0, by object of another rank
 };
 
 }  // namespace supple::cli

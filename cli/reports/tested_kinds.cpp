@@ -27,6 +27,21 @@ bool reads_lines(ContactKinds kind) {
 
 }  // namespace
 
+TestedKinds::TestedKinds(const Input& input, ContactKinds requested) : input_(input), requested_(requested) {
+  const auto& objects = input.objects;
+  are_frames_ = input.scene_text.empty() && objects.size() > 1 &&
+                std::ranges::all_of(objects, [&](const InputObject& object) {
+                  return object.mesh.triangles == objects.front().mesh.triangles;
+                });
+  has_lines_ = std::ranges::any_of(objects, [](const InputObject& object) {
+    return !object.mesh.edges.empty() || !object.mesh.points.empty();
+  });
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < objects.size() && count < 2; ++i)
+    count += count_finite_triangles(objects[i].mesh);
+  has_one_triangle_ = count == 1;
+}
+
 void TestedKinds::add(const Frame& frame) {
   ++frames_;
   ContactKinds untested = ContactKinds::none;
@@ -90,24 +105,18 @@ std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason
       return "every triangle has a vertex that is not finite; correct the coordinates";
     case NothingToTest::no_solid:
       return "no object is solid; --solid makes all objects solid, solid = true one object of a scene file";
-    case NothingToTest::no_motion: {
-      const auto& objects = input_.objects;
-      const bool are_frames =
-          objects.size() > 1 && std::all_of(objects.begin(), objects.end(), [&](const InputObject& object) {
-            return object.mesh.triangles == objects.front().mesh.triangles;
-          });
-      return are_frames && input_.scene_text.empty()
+    case NothingToTest::no_motion:
+      return are_frames_
                  ? "nothing moves; if the meshes are frames of one object, give --sequence"
                  : "nothing moves; give frames of one object with --sequence, or a scene file with motion";
-    }
     case NothingToTest::no_margin:
       return "all margins are 0, which finds only what touches; give --margin";
     case NothingToTest::one_object:
       return advice_for_one_object(kind);
     case NothingToTest::shared_vertex:
       if (reads_lines(kind)) return "each two elements of the object share a vertex; give more objects";
-      return has_one_triangle() ? "there is only one triangle; give more objects"
-                                : "each two triangles of the object share a vertex; give --neighbours exact";
+      return has_one_triangle_ ? "there is only one triangle; give more objects"
+                               : "each two triangles of the object share a vertex; give --neighbours exact";
     case NothingToTest::all_static:
       return "all objects are static; let one of them move";
     case NothingToTest::groups:
@@ -120,16 +129,7 @@ std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason
 
 /// Whether an object has lines or points, which this kind does not read.
 bool TestedKinds::leaves_out_lines(ContactKinds kind) const {
-  return !reads_lines(kind) && std::ranges::any_of(input_.objects, [](const InputObject& object) {
-    return !object.mesh.edges.empty() || !object.mesh.points.empty();
-  });
-}
-
-/// Whether all objects together have one triangle that can touch something.
-bool TestedKinds::has_one_triangle() const {
-  std::size_t count = 0;
-  for (const InputObject& object : input_.objects) count += count_finite_triangles(object.mesh);
-  return count == 1;
+  return !reads_lines(kind) && has_lines_;
 }
 
 std::string TestedKinds::advice_for_one_object(ContactKinds kind) const {
@@ -137,7 +137,7 @@ std::string TestedKinds::advice_for_one_object(ContactKinds kind) const {
                        : kind == ContactKinds::penetration || !reads_lines(kind)
                            ? "only one object has a triangle of finite coordinates"
                            : "only one object has elements of finite coordinates";
-  const bool needs_another = kind == ContactKinds::penetration || has_one_triangle();
+  const bool needs_another = kind == ContactKinds::penetration || has_one_triangle_;
   reason += needs_another ? "; give another one" : "; --self tests it against itself";
   if (leaves_out_lines(kind)) reason += "; lines and points take part in --contacts continuous and proximity";
   const TriangleMesh& mesh = input_.objects.front().mesh;

@@ -15,7 +15,7 @@ struct Input;
 /// Which kinds of contacts a run has tested: a kind counts as tested when one frame had something to test.
 class TestedKinds {
  public:
-  TestedKinds(const Input& input, ContactKinds requested) : input_(input), requested_(requested) {}
+  TestedKinds(const Input& input, ContactKinds requested);
 
   void add(const Frame& frame);
   bool was_tested(ContactKinds kind) const { return contains(tested_, kind); }
@@ -25,10 +25,13 @@ class TestedKinds {
  private:
   std::string reason_in_words(ContactKinds kind, NothingToTest reason) const;
   bool leaves_out_lines(ContactKinds kind) const;
-  bool has_one_triangle() const;
   std::string advice_for_one_object(ContactKinds kind) const;
 
   const Input& input_;
+  // Of the meshes, which the input may lose during a run.
+  bool are_frames_ = false;        ///< several meshes with the same triangles
+  bool has_lines_ = false;         ///< edges or points of no triangle
+  bool has_one_triangle_ = false;  ///< all objects together have one triangle that can touch something
   ContactKinds requested_, tested_ = ContactKinds::none;
   std::uint64_t frames_ = 0;
   std::map<ContactKinds, NothingToTest> reasons_;  // the last ones

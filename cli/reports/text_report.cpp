@@ -27,6 +27,11 @@ void add_to(StepStats& sum, const StepStats& stats) {
 
 }  // namespace
 
+TextReport::TextReport(std::string noun, const Input& input, const MovingObjects& objects)
+    : noun_(std::move(noun)), input_(input), objects_(objects), self_contacts_(input, objects) {
+  for (const InputObject& object : input.objects) triangles_ += object.mesh.triangles.size();
+}
+
 void TextReport::add(const Frame& frame) {
   const DetectResult& result = frame.result;
   ++frames_;
@@ -91,11 +96,9 @@ void TextReport::add(const Frame& frame) {
 }
 
 void TextReport::print(const TestedKinds& tested) const {
-  std::uint64_t triangles = 0;
-  for (const InputObject& object : input_.objects) triangles += object.mesh.triangles.size();
   const std::string ranks =
       objects_.rank_count() > 1 ? fmt::format(", {} ranks", objects_.rank_count()) : std::string();
-  fmt::print("{}, {}, {}{}\n\n", counted(input_.objects.size(), "object"), counted(triangles, "triangle"),
+  fmt::print("{}, {}, {}{}\n\n", counted(input_.objects.size(), "object"), counted(triangles_, "triangle"),
              counted(frames_, noun_), ranks);
   print_contacts(tested);
   if (simulated_) print_collisions();

@@ -16,8 +16,7 @@ namespace supple::cli {
 class TextReport {
  public:
   /// `noun` is the word for a frame: `frame` or `step`.
-  TextReport(std::string noun, const Input& input, const MovingObjects& objects)
-      : noun_(std::move(noun)), input_(input), objects_(objects), self_contacts_(input, objects) {}
+  TextReport(std::string noun, const Input& input, const MovingObjects& objects);
 
   void add(const Frame& frame);
   /// Prints to standard output.
@@ -56,6 +55,7 @@ class TextReport {
   std::string noun_;
   const Input& input_;
   const MovingObjects& objects_;
+  std::uint64_t triangles_ = 0;  ///< of the input
   std::uint64_t triangle_pairs_ = 0;
   std::uint64_t frames_ = 0;
   std::map<ObjectPair, PairSummary> pairs_;

@@ -2,57 +2,34 @@
 
 import json
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
-import time
 import unittest
 
-from ranks import MPIEXEC, PROGRAM, SCENES, RanksTest, launch
-
-
-def pid_of_rank(rank, launcher):
-    """The process of a rank of this launcher; None before it runs."""
-    for folder in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
-            name = (folder / "comm").read_text().strip()
-            variables = (folder / "environ").read_bytes().split(b"\0")
-        except OSError:
-            continue
-        if parent == launcher and name == "supple-mpi" and b"OMPI_COMM_WORLD_RANK=%d" % rank in variables:
-            return int(folder.name)
-    return None
+from ranks import MPIEXEC, PROGRAM, SCENES, RanksTest, eventually, launch, pid_of_rank
 
 
 class Jobs(RanksTest):
-    def eventually(self, condition):
-        end = time.monotonic() + 60
-        while not (result := condition()):
-            self.assertLess(time.monotonic(), end)
-            time.sleep(0.01)
-        return result
-
     def start_long_run(self):
         """Returns the job when it has written frames."""
         job = subprocess.Popen(
             [MPIEXEC, "-n", "2", PROGRAM, "simulate", SCENES / "nine.toml", "--frames", "1000000", "--json", "out.json"],
             cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         out = self.folder / "out.json"
-        self.eventually(lambda: out.exists() and '"frame":1' in out.read_text().replace(" ", ""))
+        eventually(lambda: out.exists() and '"frame":1' in out.read_text().replace(" ", ""))
         return job
 
     def test_a_killed_rank_ends_the_job(self):
         job = self.start_long_run()
-        os.kill(self.eventually(lambda: pid_of_rank(1, job.pid)), signal.SIGKILL)
+        os.kill(eventually(lambda: pid_of_rank(1, job.pid)), signal.SIGKILL)
         _, error = job.communicate(timeout=60)
         self.assertNotEqual(job.returncode, 0)
         self.assertRegex(error, r"process rank 1 .*exited on signal 9")
 
     def test_a_signal_at_one_rank_ends_all_with_whole_files(self):
         job = self.start_long_run()
-        os.kill(self.eventually(lambda: pid_of_rank(1, job.pid)), signal.SIGTERM)
+        os.kill(eventually(lambda: pid_of_rank(1, job.pid)), signal.SIGTERM)
         _, error = job.communicate(timeout=60)
         self.assertEqual(job.returncode, 128 + signal.SIGTERM)
         self.assertEqual(error.count("supple: interrupted after"), 1, error)

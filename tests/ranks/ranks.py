@@ -5,6 +5,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from program import PROGRAM, ROOT, ProgramTest  # noqa: E402
@@ -32,6 +33,30 @@ def launch(ranks, *arguments, folder=None, **environment):
         text=True,
         env={**os.environ, **environment},
     )
+
+
+def pid_of_rank(rank, launcher):
+    """The process of a rank of this launcher; None before it runs."""
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            parent = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+            name = (folder / "comm").read_text().strip()
+            variables = (folder / "environ").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if parent == launcher and name == "supple-mpi" and b"OMPI_COMM_WORLD_RANK=%d" % rank in variables:
+            return int(folder.name)
+    return None
+
+
+def eventually(condition):
+    """Waits until the condition is true, and returns its value."""
+    end = time.monotonic() + 60
+    while not (result := condition()):
+        if time.monotonic() > end:
+            raise AssertionError("it did not happen within a minute")
+        time.sleep(0.01)
+    return result
 
 
 class RanksTest(ProgramTest):

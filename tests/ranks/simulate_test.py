@@ -1,8 +1,8 @@
-"""`supple simulate` on several ranks: the same motion, contacts and recordings."""
+"""`supple simulate` on several ranks: the same motion and contacts."""
 
 import unittest
 
-from ranks import SCENES, RanksTest, launch
+from ranks import SCENES, RanksTest
 
 
 class Simulate(RanksTest):
@@ -12,23 +12,6 @@ class Simulate(RanksTest):
                          ranks=(2,))
         self.assert_same(SCENES / "three_bikes.toml", "--frames", 8, command="simulate", ranks=(3,))
         self.assertIn("energy", self.assert_same(SCENES / "spring_lengths.toml", "--frames", 5, command="simulate", ranks=(2,)))
-
-    def test_recordings(self):
-        """All except the counts of work: they are those of the ranks."""
-        reports = []
-        for ranks in (0, 2, 3):
-            done = launch(ranks, "simulate", SCENES / "nine.toml", "--frames", 6, "--record", "run.h5", "--quiet",
-                          folder=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
-            read = self.run_here("detect", "run.h5", "--json", "-", "--no-stats", "--contact-details")
-            self.assertEqual(read.status, 0, read.error)
-            differ = self.run_here("diff", "run.h5", "alone.h5" if reports else "run.h5")
-            self.assertRegex(differ.out, "differ in frame 0: statistics" if reports else "equal")
-            reports.append(read.out)
-            if len(reports) == 1:
-                (self.folder / "run.h5").rename(self.folder / "alone.h5")
-        self.assertEqual(reports[0], reports[1])
-        self.assertEqual(reports[0], reports[2])
 
     def test_bodies_that_respond(self):
         """Each body depends on those that others touch."""
