@@ -64,7 +64,8 @@ async function costsLittle(stage) {
     });
   const { calls, triangles } = await drawn();
   assert.ok(calls >= 1 && calls <= 15, `${calls} draw calls`);
-  assert.equal(triangles, COLUMNS * ROWS * 20);
+  const world = 16;  // the floor, the shadow and the box of the border
+  assert.ok(triangles >= COLUMNS * ROWS * 20 && triangles <= COLUMNS * ROWS * 20 + world, `${triangles} triangles`);
   const rows = await list(page).getByRole("listitem").count();
   assert.ok(rows > 3 && rows < 100, `${rows} rows have elements`);
   assert.equal(await list(page).getByRole("listitem").first().getAttribute("aria-posinset"), "1");

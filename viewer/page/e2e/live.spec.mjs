@@ -24,18 +24,6 @@ async function movesPausesAndSteps(stage) {
   await until(page, (paused) => supple.model.frame.text.step > paused + 3, paused);
 }
 
-/** Objects that drift through the whole scene stay in view. */
-async function firstViewShowsTheBorder(stage) {
-  const { page } = await stage.view(join(scenes, "table1_3.toml"));
-  const outside = await page.evaluate(() => {
-    const { left, top, right, bottom } = document.querySelector("canvas.view").getBoundingClientRect();
-    const [lower, upper] = supple.model.scene.bounds;
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? upper : lower)[axis]));
-    return corners.map((corner) => supple.project(corner)).filter(({ x, y }) => !(x > left && x < right && y > top && y < bottom));
-  });
-  assert.deepEqual(outside, []);
-}
-
 async function resetsWithASeedAndSpeed(stage) {
   const { page } = await stage.view(nine);
   await until(page, () => supple.model.frame.text.step > 10);
@@ -594,7 +582,6 @@ async function plotsHoldEveryStep(stage) {
 
 export const tests = [
   ["moves, pauses and steps", movesPausesAndSteps],
-  ["the first view shows the border", firstViewShowsTheBorder],
   ["resets with a seed, at another speed", resetsWithASeedAndSpeed],
   ["each layer shows", eachLayerShows],
   ["proximity pairs and depths show", proximityAndDepthsShow],

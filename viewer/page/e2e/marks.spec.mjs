@@ -29,7 +29,7 @@ async function smallGapsAreSeen(stage) {
   await until(page, () => supple.counts().proximity === 0);
   await settled(page);
   const pixels = await difference(page, shown, await picture(page));
-  assert.ok(pixels >= 16, `the mark has ${pixels} pixels, at half the resolution`);
+  assert.ok(pixels >= 8, `the mark has ${pixels} pixels, at half the resolution`);
 }
 
 /** Thousands of gaps are counted in words, but not all are drawn; more of them from nearby. */
@@ -82,8 +82,6 @@ async function emptyLayersAreFolded(stage) {
   await page.getByText("More layers").click();
   await page.getByRole("list", { name: "More layers" }).getByRole("checkbox", { name: "Intersecting triangles" }).waitFor();
   // Pulled together, the balls intersect, and the row moves up.
-  await page.getByRole("button", { name: /^a/ }).click();
-  await page.keyboard.press("f");
   await page.evaluate(() => {
     supple.client.send({ do: "grab", object: 0, vertex: 0 });
     supple.client.send({ do: "drag", to: [1.2, 0, 0] });

@@ -162,6 +162,12 @@ export class Model extends Emitter<ModelEvents> {
   octree: { onlySelected: boolean; level: number } = { onlySelected: false, level: -1 };
   nodes: NodeChoice = { objects: null, level: LEAVES };
   throughSurfaces = true;
+  /** Whether surfaces are shaded smooth. */
+  smooth = true;
+  /** Whether surfaces are so transparent that everything inside is visible. */
+  xray = false;
+  /** The upward axis. */
+  up: "y" | "z" = "y";
   pointSize = 5;
   normalLength = 24;  // in CSS pixels
 

@@ -7,7 +7,7 @@ import { LAYERS, type Layer, type Model, type NodeChoice } from "./model";
 import type { CameraRig, CameraState } from "./view/camera";
 
 /** Numbers and switches of the model that are part of a view. */
-const MARKS = ["throughSurfaces", "pointSize", "normalLength"] as const;
+const MARKS = ["throughSurfaces", "pointSize", "normalLength", "smooth", "xray", "up"] as const;
 type Marks = Pick<Model, (typeof MARKS)[number]>;
 
 export interface ViewState {
@@ -69,6 +69,7 @@ export function showView(model: Model, view: Partial<ViewState>): void {
   }
   if (isRecord(marks))
     for (const name of MARKS) if (typeof marks[name] === typeof model[name]) (model as unknown as Record<string, unknown>)[name] = marks[name];
+  if (model.up !== "z") model.up = "y";
   if (isRecord(objects))
     for (const object of model.objects) {
       const kept = Object.hasOwn(objects, object.name) ? objects[object.name] : undefined;

@@ -37,13 +37,13 @@ export function message(kind: number, ...sections: Section[]): ArrayBuffer {
 }
 
 export const SCENE = {
-  version: "0.5.0", title: "two", source: "simulation", generation: 1, center: [0, 0, 0], bounds: [[-1, -1, -1], [1, 1, 1]],
+  version: "0.5.0", title: "two", source: "simulation", generation: 1, run: 1, settings: [], center: [0, 0, 0], bounds: [[-1, -1, -1], [1, 1, 1]],
   objects: [
     { name: "one", vertices: 3, triangles: 1, static: false, body: true, self_collision: false },
     { name: "other", vertices: 4, triangles: 2, static: true, body: false, self_collision: false },
   ],
-  frames: null, time_step: 0.01, seed: "0", bounding_volume: "aabb", contacts: "intersection", broad_phase: "octree",
-  max_level: 16, leaf_size: 64, integrator: "verlet", choices: { contacts: ["none", "intersection"] },
+  frames: null, time_step: 0.01, seed: "0", contacts: "intersection",
+
   kinds: {
     contact: ["point", "segment", "polygon"], certainty: ["certain", "within_tolerance"], curve: ["closed", "open", "branched"],
     impact: [["vertex", "face"], ["face", "vertex"], ["edge", "edge"], ["vertex", "edge"], ["edge", "vertex"], ["vertex", "vertex"]],

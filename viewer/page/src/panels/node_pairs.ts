@@ -31,6 +31,7 @@ export class NodePairs {
     model.on("scene", () => this.reset());
     model.on("frame", () => this.later());
     model.on("display", () => this.draw());
+    new ResizeObserver(() => this.later()).observe(this.element);  // the tab was opened
   }
 
   private get objects(): [number, number] | null {

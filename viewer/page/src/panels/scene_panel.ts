@@ -5,6 +5,7 @@ import type { FrameMessage } from "../protocol/messages";
 import { h, readable } from "./dom";
 import { ObjectList } from "./object_list";
 import { TouchLine } from "./touch_line";
+import { ViewOptions } from "./view_options";
 
 interface LayerRow {
   layer: Layer;
@@ -57,6 +58,7 @@ export class ScenePanel {
   readonly element: HTMLElement;
   private readonly counts = new Map<Layer, HTMLElement>();
   private readonly boxes = new Map<Layer, HTMLInputElement>();
+  private readonly view: ViewOptions;
   private readonly rows = new Map<Layer, HTMLElement>();
   private readonly list = h("ul", { class: "layers", "aria-label": "Layers" });
   private readonly moreList = h("ul", { class: "layers", "aria-label": "More layers" });
@@ -72,12 +74,13 @@ export class ScenePanel {
   private deepest = -1;
 
   constructor(private readonly model: Model, frameObject: () => void) {
+    this.view = new ViewOptions(model);
     this.element = h(
       "aside",
       { class: "panel left", "aria-label": "Scene" },
       h("section", {}, new TouchLine(model).element),
       new ObjectList(model, frameObject).element,
-      h("section", {}, h("h2", {}, "Layers"), this.list, this.more, this.octreeOptions(), this.legend, this.omitted),
+      h("section", {}, h("h2", {}, "Layers"), this.view.element, this.list, this.more, this.octreeOptions(), this.legend, this.omitted),
     );
     this.makeRows();
     model.on("scene", () => this.build());
@@ -157,8 +160,9 @@ export class ScenePanel {
     this.legend.hidden = !layers.octree && !layers.regions && !layers.nodes;
   }
 
-  /** Shows the number of drawn elements beside each layer. */
-  showCounts(drawn: Record<string, number>): void {
+  /** Shows the number of elements beside each layer, and whether surfaces are flat because they are too large. */
+  showCounts(drawn: Record<string, number>, isFlat: boolean): void {
+    this.view.sayFlat(isFlat && this.model.smooth);
     const { frame, layers } = this.model;
     const of: Partial<Record<Layer, number>> = {
       regions: drawn["regions"]!, octree: drawn["boxes"]! + drawn["balls"]!, nodes: drawn["nodeBoxes"]! + drawn["nodeBalls"]!, candidates: drawn["candidates"]!, triangles: drawn["triangles"]!,

@@ -30,7 +30,7 @@ interface Flight {
  */
 export class CameraRig {
   camera: THREE.PerspectiveCamera | THREE.OrthographicCamera;
-  readonly controls: OrbitControls;
+  controls: OrbitControls;
   private readonly perspective = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
   private readonly orthographic = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 100);
   private flight: Flight | null = null;
@@ -38,14 +38,37 @@ export class CameraRig {
   private aspect = 1;
   private saving: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(canvas: HTMLElement, private readonly changed: () => void) {
+  constructor(private readonly canvas: HTMLElement, private readonly changed: () => void) {
     this.camera = this.perspective;
     this.camera.position.set(1.2, 0.8, 2);
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.zoomToCursor = true;
-    this.controls.enableDamping = false;
-    this.controls.addEventListener("change", () => this.moved());
-    this.controls.addEventListener("start", () => (this.flight = null));
+    this.controls = this.makeControls();
+  }
+
+  private makeControls(): OrbitControls {
+    const controls = new OrbitControls(this.camera, this.canvas);
+    controls.zoomToCursor = true;
+    controls.enableDamping = false;
+    controls.addEventListener("change", () => this.moved());
+    controls.addEventListener("start", () => (this.flight = null));
+    return controls;
+  }
+
+  /** Turns from the y axis to the upward axis. */
+  readonly turn = new THREE.Quaternion();
+
+  /** Changes the upward axis. The camera keeps its place relative to it. */
+  setUp(turn: THREE.Quaternion): void {
+    if (turn.equals(this.turn)) return;
+    const change = turn.clone().multiply(this.turn.clone().invert());
+    const target = this.controls.target.clone();
+    this.turn.copy(turn);
+    for (const camera of [this.perspective, this.orthographic]) camera.up.set(0, 1, 0).applyQuaternion(turn);
+    this.camera.position.sub(target).applyQuaternion(change).add(target);
+    this.controls.dispose();  // controls keep the upward axis that they were made with
+    this.controls = this.makeControls();
+    this.controls.target.copy(target);
+    this.controls.update();
+    this.moved();
   }
 
   get isOrthographic(): boolean {
@@ -133,6 +156,7 @@ export class CameraRig {
   lookAlong(view: AxisView, fly = true): void {
     const direction = new THREE.Vector3(...AXIS_VIEWS[view]);
     if (view === "top" || view === "bottom") direction.z += 1e-4;  // exactly vertical has no up direction
+    direction.applyQuaternion(this.turn);
     const to = this.controls.target.clone().add(direction.normalize().multiplyScalar(this.distance));
     this.go(to, this.controls.target.clone(), fly, this.camera.zoom);
   }
@@ -162,10 +186,11 @@ export class CameraRig {
 
   /** Keyboard: orbits by angles, moves by fractions of the view, or zooms. */
   orbit(right: number, up: number): void {
-    const offset = new THREE.Spherical().setFromVector3(this.camera.position.clone().sub(this.controls.target));
+    const back = this.turn.clone().invert();
+    const offset = new THREE.Spherical().setFromVector3(this.camera.position.clone().sub(this.controls.target).applyQuaternion(back));
     offset.theta -= right;
     offset.phi = Math.min(Math.PI - 1e-3, Math.max(1e-3, offset.phi - up));
-    this.camera.position.setFromSpherical(offset).add(this.controls.target);
+    this.camera.position.setFromSpherical(offset).applyQuaternion(this.turn).add(this.controls.target);
     this.controls.update();
     this.moved();
   }

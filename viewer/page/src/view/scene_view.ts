@@ -1,17 +1,22 @@
 /** Draws surfaces, layers and the selection, only when something has changed. */
 import * as THREE from "three";
-import { MARKS, OKABE_ITO } from "../colours";
-import { contactCount, findContact, pointsAt } from "../contacts";
-import { boundsOfAll, type Model, type ObjectState } from "../model";
+import { contactCount, pointsAt } from "../contacts";
+import { boundsOf, boundsOfAll, type Bounds, type Model, type ObjectState } from "../model";
 import { CameraRig } from "./camera";
+import { Highlights } from "./highlights";
 import { Layers } from "./layers";
 import { pick, type Hit } from "./picking";
-import { Dots, Lines, type Projection } from "./marks";
-import { Faces, shared } from "./primitives";
+import type { Projection } from "./marks";
+import { shared } from "./primitives";
 import { obstacleOf, Surfaces } from "./surfaces";
+import { World } from "./world";
 
 /** From the scene to the first camera: from above, so that one looks into open boxes. */
 const FIRST_DIRECTION = new THREE.Vector3(0.55, 0.7, 1);
+
+const XRAY_OPACITY = 0.3;
+/** How far objects within a border may move and stay in the first view, relative to their size together. */
+const ROOM = 0.25;
 
 /** In pixels. */
 export interface PictureSize {
@@ -30,17 +35,13 @@ export class SceneView {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
   private readonly surfaces = new Surfaces();
-  private readonly selected = new Faces({ colour: OKABE_ITO.yellow, opacity: 0.9, order: 3 });
-  private readonly vertex = new Dots({ colour: MARKS.selection, size: 11, onTop: true, order: 8 });
-  private readonly contactDot = new Dots({ colour: MARKS.contact, size: 14, onTop: true, order: 9 });
-  private readonly outlines = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Lines({ colour, size: 2.5, onTop: true, order: 7 }));
-  private readonly picked = [OKABE_ITO.orange, OKABE_ITO.sky].map((colour) => new Faces({ colour, opacity: 0.95, order: 4 }));
-  private readonly distance = new Lines({ colour: MARKS.selection, size: 2, onTop: true, order: 8 });
-  private readonly ruler = new Lines({ colour: MARKS.selection, size: 2.5, onTop: true, order: 8 });
-  private readonly pull = new Lines({ colour: MARKS.contact, size: 2.5, onTop: true, order: 8 });
-  private readonly extras = [this.vertex, this.contactDot, ...this.outlines, this.distance, this.ruler, this.pull];
+  private readonly world = new World();
+  private shadowIsStale = true;
+  private drawnInfo = { calls: 0, triangles: 0, points: 0 };
+  private readonly highlights: Highlights;
   private readonly projection: Projection = { matrix: new THREE.Matrix4(), version: 0 };
   private readonly size = new THREE.Vector2();
+  private wasSmooth = true;
   private dirty = true;
   private filled = false;
   private checkMemory = false;
@@ -53,9 +54,8 @@ export class SceneView {
     this.renderer.setClearAlpha(1);
     this.rig = new CameraRig(canvas, () => this.invalidate());
     this.layers = new Layers(model);
-    this.scene.add(this.surfaces.group, this.layers.group);
-    for (const extra of [this.selected, ...this.picked, ...this.extras])
-      this.scene.add(extra.shape);
+    this.highlights = new Highlights(model);
+    this.scene.add(this.world.group, this.surfaces.group, this.layers.group, this.highlights.group);
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
       this.onLost("The graphics card stopped drawing. The scene may be too large for it.");
@@ -78,13 +78,20 @@ export class SceneView {
     return obstacleOf(this.renderer.getContext() as WebGL2RenderingContext, objects);
   }
 
-  setBackground(colour: string): void {
-    this.renderer.setClearColor(new THREE.Color(colour), this.renderer.getClearAlpha());
+  setColours(ground: string, ink: string): void {
+    const colour = new THREE.Color(ground);
+    this.renderer.setClearColor(colour, this.renderer.getClearAlpha());
+    this.world.setColours(ink, colour.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5);
     this.invalidate();
   }
 
   invalidate(): void {
     this.dirty = true;
+  }
+
+  /** Whether surfaces are shaded flat because too many triangles move. */
+  get isFlat(): boolean {
+    return this.surfaces.isTooLarge;
   }
 
   /** Whether everything that changed has been drawn. */
@@ -95,6 +102,7 @@ export class SceneView {
   /** Marks the positions of these objects as changed. */
   touch(objects: Iterable<number> = this.model.objects.keys()): void {
     this.surfaces.touch(objects);
+    this.shadowIsStale = true;
     this.refill();
   }
 
@@ -122,6 +130,7 @@ export class SceneView {
    */
   setPicture(size: PictureSize | null, transparent = false): void {
     this.takesPictures = false;
+    this.world.group.visible = !(size && transparent);
     this.renderer.setClearAlpha(size && transparent ? 0 : 1);
     if (!size) return this.resize();
     const { width, height } = size;
@@ -162,15 +171,31 @@ export class SceneView {
     const bounds = this.model.scene!.bounds;
     this.rig.setExtent(Math.hypot(...bounds[0], ...bounds[1]));
     shared.lift.value = 0.01 * Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!));
+    this.placeWorld();
     this.checkMemory = true;
-    this.pull.fill(0, () => 0);
+    this.highlights.showPull(null, null);
     this.select();
     this.paint();
   }
 
+  private placeWorld(): void {
+    const { bounds, border, center } = this.model.scene!;
+    const isPhysical = this.model.objects.some(({ isBody, kind }) => isBody || kind === "rigid");
+    const { up } = this.model;
+    this.world.build(bounds, border ?? null, center, isPhysical ? "m" : "", up);
+    this.rig.setUp(this.world.turn);
+    this.surfaces.up = this.rig.camera.up;
+    this.shadowIsStale = true;
+  }
+
   /** Applies the appearance of the objects. */
   private paint(): void {
-    this.surfaces.paint(this.model.layers);
+    const { layers, xray, smooth, up } = this.model;
+    this.surfaces.paint(layers, xray ? XRAY_OPACITY : 1);
+    if (smooth !== this.wasSmooth) this.surfaces.isSmooth = smooth;
+    this.wasSmooth = smooth;
+    if (up !== this.world.up) this.placeWorld();
+    this.shadowIsStale = true;
     this.refill();
   }
 
@@ -182,115 +207,53 @@ export class SceneView {
   private fill(): void {
     this.filled = true;
     this.layers.update();
-    this.fillSelection();
-    this.fillExplanation();
+    this.highlights.update();
   }
 
-  private writeCorners(into: Float32Array, object: number, triangle: number): number {
-    const { corners, positions } = this.model.objects[object]!;
-    for (let corner = 0; corner < 3; ++corner)
-      for (let axis = 0; axis < 3; ++axis)
-        into[3 * corner + axis] = positions[3 * corners[3 * triangle + corner]! + axis]!;
-    return 1;
-  }
-
-  private fillSelection(): void {
-    const { selection } = this.model;
-    const triangle = selection?.triangle ?? null;
-    this.selected.fill(triangle === null ? 0 : 1, (into) => this.writeCorners(into, selection!.object, triangle!));
-    const vertex = selection?.vertex ?? null;
-    this.vertex.fill(vertex === null ? 0 : 1, (into) => {
-      into.set(this.positionOf(selection!.object, vertex!));
-      return 1;
-    });
-    const point = this.contactPoint();
-    this.contactDot.fill(point ? 1 : 0, (into) => {
-      into.set(point!);
-      return 1;
-    });
-  }
-
-  /** The current position of the selected contact, or null when it has ended. */
   contactPoint(): number[] | null {
-    const { contact, frame } = this.model;
-    if (!contact || !frame) return null;
-    const at = findContact(frame, contact);
-    if (at < 0) return null;
-    const { data, first, count } = pointsAt(frame, at);
-    const mean = [0, 0, 0];
-    for (let k = 0; k < count; ++k)
-      for (let axis = 0; axis < 3; ++axis) mean[axis]! += data[8 * (first + k) + axis]! / count;
-    return count > 0 ? mean : null;
-  }
-
-  private fillExplanation(): void {
-    const { explained, explanation } = this.model;
-    this.picked.forEach((faces, side) => {
-      const of = explained[side];
-      faces.fill(of ? 1 : 0, (into) => this.writeCorners(into, of!.object, of!.triangle));
-    });
-    this.outlines.forEach((lines, side) => {
-      const box = explanation?.boxes?.[side];
-      const ball = explanation?.spheres?.[side];
-      const edges = explanation?.edges?.[side];
-      if (edges) lines.fill(edges.length, (into) => writeEdges(into, edges));
-      else if (box) lines.fill(12, (into) => writeBox(into, box));
-      else if (ball) lines.fill(144, (into) => writeBall(into, ball));
-      else lines.fill(0, () => 0);
-    });
-    const nearest = explanation?.nearest;
-    this.ruler.fill(nearest ? 1 : 0, (into) => {
-      into.set(nearest!.points.flat());
-      return 1;
-    });
-    const axis = explanation?.axis;
-    const span = axis && explanation.distance ? this.distanceSpan(axis, explanation.distance) : null;
-    this.distance.fill(span ? 1 : 0, (into) => {
-      into.set(span!);
-      return 1;
-    });
-  }
-
-  /** A line as long as the distance between two separated triangles. */
-  private distanceSpan(axis: number[], distance: number): number[] | null {
-    const { explained, explanation } = this.model;
-    const boxes = explanation?.boxes;
-    const centres = boxes
-      ? boxes.map((box) => box[0]!.map((x, i) => (x + box[1]![i]!) / 2))
-      : explained.map(({ object, triangle }) => this.centroid(object, triangle));
-    if (centres.length < 2) return null;
-    const middle = centres[0]!.map((x, i) => (x + centres[1]![i]!) / 2);
-    return [-0.5, 0.5].flatMap((part) => middle.map((x, i) => x + part * distance * axis[i]!));
+    return this.highlights.contactPoint();
   }
 
   centroid(object: number, triangle: number): number[] {
-    const corners = new Float32Array(9);
-    this.writeCorners(corners, object, triangle);
-    return [0, 1, 2].map((axis) => (corners[axis]! + corners[3 + axis]! + corners[6 + axis]!) / 3);
+    return this.highlights.centroid(object, triangle);
   }
 
   positionOf(object: number, vertex: number): [number, number, number] {
-    const { positions } = this.model.objects[object]!;
-    return [positions[3 * vertex]!, positions[3 * vertex + 1]!, positions[3 * vertex + 2]!];
+    return this.highlights.positionOf(object, vertex);
   }
 
   /** Shows the pulled vertex and its target, or nothing. */
   showPull(from: ArrayLike<number> | null, to: ArrayLike<number> | null): void {
-    this.pull.fill(from && to ? 1 : 0, (into) => {
-      into.set(from!, 0);
-      into.set(to!, 3);
-      return 1;
-    });
+    this.highlights.showPull(from, to);
     this.invalidate();
   }
 
-  /** Shows the whole border, so that objects that move within it stay in view. */
+  /**
+   * Shows what moves with some room to move, but not more than the border, and the objects around it that are not
+   * much larger.
+   */
   private firstFrame(): void {
     this.hasFramed = true;
+    this.lowerFloor();
     if (this.rig.restore()) return;
-    const [lower, upper] = this.model.scene!.bounds;
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? upper : lower)[axis]!));
-    this.rig.frame(new THREE.Vector3(), corners, FIRST_DIRECTION, false);
+    const { objects } = this.model;
+    const { border } = this.model.scene!;
+    const moving = boundsOfAll(objects.filter(({ isStatic }) => !isStatic));
+    const size = ({ lower, upper }: Bounds) => Math.hypot(...upper.map((x, axis) => x - lower[axis]!));
+    const shown = boundsOfAll(objects.filter((object) => !moving || !object.isStatic || size(boundsOf(object) ?? moving) < 3 * size(moving)));
+    if (!shown) return;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((axis) => {
+      const isUpper = (i >> axis) & 1;
+      const room = border ? ROOM * size(shown) : 0;
+      return isUpper ? Math.max(shown.upper[axis]!, Math.min(shown.upper[axis]! + room, border?.[1][axis] ?? Infinity)) : Math.min(shown.lower[axis]!, Math.max(shown.lower[axis]! - room, border?.[0][axis] ?? -Infinity));
+    }));
+    const center = new THREE.Vector3().fromArray(corners[0]!).add(new THREE.Vector3().fromArray(corners[7]!)).multiplyScalar(0.5);
+    this.rig.frame(center, corners, FIRST_DIRECTION.clone().applyQuaternion(this.world.turn), false);
+  }
+
+  private lowerFloor(): void {
+    const bounds = boundsOfAll(this.model.objects.filter(({ visible }) => visible));
+    if (bounds) this.world.follow(bounds.lower["xyz".indexOf(this.model.up)]!);
   }
 
   frameAll(): void {
@@ -395,7 +358,16 @@ export class SceneView {
     this.dirty = false;
     if (!this.filled) this.fill();
     this.arrange();
+    this.surfaces.shade(this.model.smooth);
+    if (this.shadowIsStale && this.world.group.visible) {
+      this.shadowIsStale = false;
+      this.lowerFloor();
+      this.world.shadow.draw(this.renderer, this.surfaces.casters);
+    }
     this.renderer.render(this.scene, this.rig.camera);
+    const { calls, triangles, points } = this.renderer.info.render;
+    this.drawnInfo = { calls, triangles, points };
+    if (this.world.group.visible) this.world.drawTriad(this.renderer, this.rig.camera);
     if (this.checkMemory && this.model.frame) {
       this.checkMemory = false;
       const gl = this.renderer.getContext();
@@ -412,50 +384,12 @@ export class SceneView {
     matrix.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
     if (!matrix.equals(before) || !this.size.equals(shared.resolution.value)) this.projection.version += 1;
     this.size.copy(shared.resolution.value);
+    this.world.arrange(camera);
     this.layers.arrange(this.projection);
-    for (const marks of this.extras) marks.arrange(this.projection);
+    this.highlights.arrange(this.projection);
   }
 
   statistics(): { calls: number; triangles: number; points: number } {
-    const { calls, triangles, points } = this.renderer.info.render;
-    return { calls, triangles, points };
+    return this.drawnInfo;
   }
-}
-
-function writeEdges(into: Float32Array, edges: number[][][]): number {
-  into.set(edges.flat(2));
-  return edges.length;
-}
-
-function writeBox(into: Float32Array, box: number[][]): number {
-  let at = 0;
-  for (let axis = 0; axis < 3; ++axis)
-    for (const u of [0, 1])
-      for (const v of [0, 1])
-        for (const t of [0, 1]) {
-          const corner = [0, 0, 0];
-          corner[axis] = box[t]![axis]!;
-          corner[(axis + 1) % 3] = box[u]![(axis + 1) % 3]!;
-          corner[(axis + 2) % 3] = box[v]![(axis + 2) % 3]!;
-          into.set(corner, at);
-          at += 3;
-        }
-  return 12;
-}
-
-/** Writes three circles; a sphere is its centre and radius. */
-function writeBall(into: Float32Array, ball: number[]): number {
-  const sides = 48;
-  let at = 0;
-  for (let axis = 0; axis < 3; ++axis)
-    for (let i = 0; i < sides; ++i)
-      for (const k of [i, i + 1]) {
-        const angle = (2 * Math.PI * k) / sides;
-        const corner = ball.slice(0, 3);
-        corner[axis]! += ball[3]! * Math.cos(angle);
-        corner[(axis + 1) % 3]! += ball[3]! * Math.sin(angle);
-        into.set(corner, at);
-        at += 3;
-      }
-  return 3 * sides;
 }

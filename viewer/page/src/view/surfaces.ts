@@ -1,6 +1,7 @@
 /** The surfaces and wireframes of all objects, in a constant number of draw calls. */
 import * as THREE from "three";
 import type { Layer, ObjectState } from "../model";
+import { writeNormals } from "./normals";
 
 /** Exceeds the buffer size of any graphics card. */
 const LARGEST_BUFFER = 0x80000000;
@@ -11,35 +12,54 @@ const HIDDEN = -1;
 /** Gaps up to this size are uploaded again rather than split into another call. */
 const GAP = 1024;
 
+/** While more triangles move than this, they are shaded flat, because their normals would take too long. */
+export const MOST_SMOOTH = 300_000;
+
 /** The range of opacities that a mesh draws: from the first to below the second. */
 const OPAQUE = new THREE.Vector2(1, 2);
 const TRANSPARENT = new THREE.Vector2(0, 1);
 const ALL = new THREE.Vector2(0, 2);
+const CASTERS = new THREE.Vector2(0.4, 2);
 
 // Vertices of objects that a mesh does not draw are moved out of view.
 const VERTEX_SHADER = `
-  uniform sampler2D looks; uniform vec2 drawn; uniform int selected; in uint object;
-  flat out vec4 look; flat out float glow; out vec3 seen;
+  uniform sampler2D looks; uniform vec2 drawn; uniform int selected; in uint object; in vec4 bent;
+  flat out vec4 look; flat out float glow; out vec3 seen; out vec3 smoothed;
   void main() {
     int number = int(object);
     look = texelFetch(looks, ivec2(number % ${LOOKS_WIDTH}, number / ${LOOKS_WIDTH}), 0);
     glow = number == selected ? 0.25 : 0.0;
     vec4 at = modelViewMatrix * vec4(position, 1.0);
     seen = at.xyz;
+    smoothed = mat3(modelViewMatrix) * bent.xyz;
     gl_Position = look.a >= drawn.x && look.a < drawn.y ? projectionMatrix * at : vec4(2.0, 2.0, 2.0, 1.0);
   }`;
 
-// Flat shading derives normals from screen-space derivatives, so deformation costs nothing. Light comes from
-// the sky, from the ground (bluish) and from the camera; surfaces that face the camera shine a little.
+// The flat normal comes from screen-space derivatives, so deformation costs nothing. The smooth normal is a mean
+// over triangles; it is short at sharp edges, which stay flat. Light comes from the sky, from the floor and from a
+// lamp beside the camera.
 const SURFACE_SHADER = `
-  flat in vec4 look; flat in float glow; in vec3 seen; out vec4 result;
-  const vec3 ground = vec3(0.246, 0.279, 0.352);
+  uniform vec3 up; flat in vec4 look; flat in float glow; in vec3 seen; in vec3 smoothed; out vec4 result;
+  const vec3 floorLight = vec3(0.30, 0.29, 0.28), lamp = normalize(vec3(0.35, 0.5, 0.8));
   void main() {
     vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
-    float above = 0.5 + 0.5 * dot(normal, viewMatrix[1].xyz);
-    float facing = clamp(normal.z, 0.0, 1.0);
-    vec3 light = 0.446 * mix(ground, vec3(1.0), above) + 0.7 * facing + glow;
-    result = linearToOutputTexel(vec4(light * look.rgb + 0.022 * facing * facing, look.a));
+    float length = length(smoothed);
+    vec3 even = length > 0.0 ? smoothed / length : normal;
+    even = dot(even, normal) < 0.0 ? -even : even;
+    normal = normalize(mix(normal, even, smoothstep(0.7, 0.82, length)));
+    float above = 0.5 + 0.5 * dot(normal, mat3(viewMatrix) * up);
+    float lit = clamp(dot(normal, lamp), 0.0, 1.0);
+    float rim = pow(1.0 - clamp(normal.z, 0.0, 1.0), 3.0);
+    vec3 light = 0.55 * mix(floorLight, vec3(0.95, 0.98, 1.05), above) + 0.58 * lit + glow;
+    result = linearToOutputTexel(vec4(light * look.rgb + 0.03 * rim * above, look.a));
+  }`;
+
+// From below: darker where the surface is near the floor.
+const SHADOW_SHADER = `
+  out vec4 result;
+  void main() {
+    float near = 1.0 - gl_FragCoord.z;
+    result = vec4(0.0, 0.0, 0.0, 0.9 * near * near);
   }`;
 
 const WIREFRAME_SHADER = `
@@ -118,11 +138,22 @@ function makeLooks(objects: number): THREE.DataTexture {
 
 export class Surfaces {
   readonly group = new THREE.Group();
+  /** What casts the shadow. */
+  readonly casters = new THREE.Scene();
+  /** Whether objects are shaded flat because too many triangles move. */
+  isTooLarge = false;
   private objects: ObjectState[] = [];
   private positions = new THREE.BufferAttribute(new Float32Array(0), 3);
-  private readonly uniforms = { looks: { value: makeLooks(0) }, selected: { value: -1 }, ink: { value: new THREE.Vector4() } };
+  private normals = new THREE.BufferAttribute(new Int16Array(0), 4, true);
+  /** Objects whose normals are not those of their positions. */
+  private readonly stale = new Set<number>();
+  private isNew = true;
+  private readonly uniforms = {
+    looks: { value: makeLooks(0) }, selected: { value: -1 }, ink: { value: new THREE.Vector4() }, up: { value: new THREE.Vector3(0, 1, 0) },
+  };
   private readonly opaque = new THREE.Mesh(new THREE.BufferGeometry(), this.material(OPAQUE, SURFACE_SHADER));
   private readonly transparent = new THREE.Mesh(new THREE.BufferGeometry(), this.material(TRANSPARENT, SURFACE_SHADER));
+  private readonly caster = new THREE.Mesh(new THREE.BufferGeometry(), this.material(CASTERS, SHADOW_SHADER));
   private readonly wireframe = new THREE.LineSegments(new THREE.BufferGeometry(), this.material(ALL, WIREFRAME_SHADER));
 
   constructor() {
@@ -133,7 +164,8 @@ export class Surfaces {
     this.transparent.material.depthWrite = false;
     this.transparent.material.forceSinglePass = false;  // back faces first: the inside is visible through the outside
     this.group.add(this.opaque, this.transparent, this.wireframe);
-    for (const shape of this.group.children) shape.frustumCulled = false;  // bounds would need an update in each frame
+    this.casters.add(this.caster);
+    for (const shape of [...this.group.children, this.caster]) shape.frustumCulled = false;  // bounds would need an update in each frame
   }
 
   private material(drawn: THREE.Vector2, fragmentShader: string): THREE.ShaderMaterial {
@@ -154,36 +186,79 @@ export class Surfaces {
     this.uniforms.looks.value = makeLooks(objects.length);
     const attribute = new THREE.BufferAttribute(positions, 3).setUsage(THREE.DynamicDrawUsage);
     this.positions = attribute.onUpload(() => attribute.clearUpdateRanges());
+    const normals = new THREE.BufferAttribute(new Int16Array((4 * positions.length) / 3), 4, true).setUsage(THREE.DynamicDrawUsage);
+    this.normals = normals.onUpload(() => normals.clearUpdateRanges());
+    this.isNew = true;
     const numbers = new Uint32Array(positions.length / 3);
     let first = 0;
     for (const { index, vertices } of objects) numbers.fill(index, first, (first += vertices));
     const number = sentOnce(numbers);
     for (const shape of [this.opaque, this.wireframe]) {
-      shape.geometry = new THREE.BufferGeometry().setAttribute("position", attribute).setAttribute("object", number);
+      shape.geometry = new THREE.BufferGeometry().setAttribute("position", attribute).setAttribute("object", number).setAttribute("bent", normals);
       shape.geometry.boundingSphere = new THREE.Sphere();  // three.js sorts by it and would otherwise visit all vertices
     }
-    this.transparent.geometry = this.opaque.geometry.setIndex(sentOnce(cornersOf(objects)));
+    this.transparent.geometry = this.caster.geometry = this.opaque.geometry.setIndex(sentOnce(cornersOf(objects)));
   }
 
   /** Marks positions as changed. Only visible objects are uploaded; the others wait. */
   touch(objects: Iterable<number>): void {
-    const { array, updateRanges: ranges } = this.positions;
+    const touched = [...objects];
+    for (const object of touched) this.stale.add(object);
+    this.upload(this.positions, touched);
+  }
+
+  private upload(attribute: THREE.BufferAttribute, objects: Iterable<number>): void {
+    const { array, updateRanges: ranges, itemSize } = attribute;
     for (const object of objects) {
       const { positions } = this.objects[object]!;
-      addRange(ranges, positions.byteOffset / positions.BYTES_PER_ELEMENT, positions.length);
+      const first = positions.byteOffset / (3 * positions.BYTES_PER_ELEMENT);
+      addRange(ranges, itemSize * first, (itemSize * positions.length) / 3);
     }
     const pending = ranges.reduce((sum, { count }) => sum + count, 0);
     if (pending > array.length / 2) ranges.splice(0, ranges.length, { start: 0, count: array.length });
-    this.positions.needsUpdate = true;
+    attribute.needsUpdate = true;
   }
 
-  /** Call when the appearance or the visibility of objects changed. */
-  paint(layers: Record<Layer, boolean>): void {
+  /** Updates the normals of objects that moved. Call before each drawing; costs nothing when nothing moved. */
+  shade(isSmooth: boolean): void {
+    if (!isSmooth || this.stale.size === 0) return;
+    const moved = [...this.stale].map((object) => this.objects[object]!);
+    const triangles = moved.reduce((sum, object) => sum + object.triangles, 0);
+    // At the start there is time for all of them.
+    this.isTooLarge = triangles > MOST_SMOOTH && !this.isNew;
+    this.isNew = false;
+    const all = this.normals.array as Int16Array;
+    for (const object of moved) {
+      const first = (4 * object.positions.byteOffset) / (3 * object.positions.BYTES_PER_ELEMENT);
+      const normals = all.subarray(first, first + 4 * object.vertices);
+      if (this.isTooLarge) normals.fill(0);
+      else writeNormals(object, normals);
+    }
+    this.upload(this.normals, this.stale);
+    this.stale.clear();
+  }
+
+  set isSmooth(on: boolean) {
+    if (!on) {
+      (this.normals.array as Int16Array).fill(0);
+      this.upload(this.normals, this.objects.keys());
+    }
+    for (const object of this.objects.keys()) this.stale.add(object);
+    this.isNew = true;
+  }
+
+  set up(direction: THREE.Vector3) {
+    this.uniforms.up.value.copy(direction);
+  }
+
+  /** Call when the appearance or the visibility of objects changed. `share` multiplies all opacities. */
+  paint(layers: Record<Layer, boolean>, share = 1): void {
     const looks = this.uniforms.looks.value;
     const data = looks.image.data as Float32Array;
     const colours = new Map<string, THREE.Color>();  // most objects share a few colours
     let [opaque, transparent] = [false, false];
-    for (const { index, colour, opacity, visible } of this.objects) {
+    for (const { index, colour, opacity: own, visible } of this.objects) {
+      const opacity = share * own;
       let linear = colours.get(colour);
       if (!linear) colours.set(colour, (linear = new THREE.Color(colour)));
       linear.toArray(data, 4 * index);
@@ -194,6 +269,7 @@ export class Surfaces {
     looks.needsUpdate = true;
     this.opaque.visible = layers.surface && opaque;
     this.transparent.visible = layers.surface && transparent;
+    this.caster.visible = layers.surface && (opaque || transparent);
     this.wireframe.visible = layers.wireframe && (opaque || transparent);
     if (this.wireframe.visible && !this.wireframe.geometry.index) this.wireframe.geometry.setIndex(sentOnce(edgesOf(cornersOf(this.objects))));
     const { r, g, b } = WIREFRAME_COLOUR;
