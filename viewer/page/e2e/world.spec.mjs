@@ -159,9 +159,12 @@ async function zIsUp(stage) {
   await settled(page);
   const top = from(await camera(page));
   assert.ok(top[2] > 0 && Math.hypot(top[0], top[1]) < 1e-2 * top[2], `from the top is ${top}`);
+  const left = await camera(page);
   await page.reload();
   await hasFrame(page);
   await until(page, () => supple.model.up === "z");
+  const again = await camera(page);
+  left.position.forEach((value, axis) => assert.ok(Math.abs(again.position[axis] - value) < 1e-3, `the camera is at ${again.position}, it was at ${left.position}`));
   assert.ok(await box(page, "Z up").isChecked(), "the choice is forgotten");
 }
 

@@ -250,6 +250,7 @@ export class App {
     this.hasRestored = true;
     if (!stored) return;
     showView(model, stored);
+    model.emit("display", null);  // a change of the upward axis turns the camera
     const camera = cameraOf(stored);
     // A link has its own camera. A reloaded address may be older than what was stored.
     const [navigation] = performance.getEntriesByType("navigation") as PerformanceNavigationTiming[];
@@ -259,7 +260,6 @@ export class App {
     }
     if (stored.tab && document.getElementById(`tab-${stored.tab}`)) this.openTab(stored.tab);
     this.body.classList.toggle("bare", stored.panels === false);
-    model.emit("display", null);
   }
 
   private storeView(): void {
