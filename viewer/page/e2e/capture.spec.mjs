@@ -293,7 +293,7 @@ async function layersThatFail(stage) {
   await box("Object octrees").check();
   await box("Candidate pairs").check();
   await box("Scene octree").check();
-  await page.getByRole("log").getByText("there is not enough memory for that. Switched off: Object octrees, Candidate pairs.").waitFor();
+  await page.getByRole("log").getByText("there is not enough memory for that. Switched off: Candidate pairs, Object octrees.").waitFor();
   assert.equal(await box("Object octrees").isChecked(), false);
   assert.equal(await box("Candidate pairs").isChecked(), false);
   assert.equal(await box("Scene octree").isChecked(), true, "what was asked for meanwhile is gone");

@@ -191,6 +191,22 @@ export const picture = (page) =>
     return document.querySelector("canvas.view").toDataURL();
   });
 
+/** The colours of the picture at points of the scene. */
+export const coloursAt = (page, points) =>
+  page.evaluate((points) => {
+    supple.draw();  // the canvas keeps its content only until the end of this task
+    const view = document.querySelector("canvas.view");
+    const copy = Object.assign(document.createElement("canvas"), { width: view.width, height: view.height });
+    const context = copy.getContext("2d");
+    context.drawImage(view, 0, 0);
+    const frame = view.getBoundingClientRect();
+    const scale = view.width / frame.width;
+    return points.map((point) => {
+      const { x, y } = supple.project(point);
+      return [...context.getImageData(Math.round((x - frame.left) * scale), Math.round((y - frame.top) * scale), 1, 1).data].slice(0, 3);
+    });
+  }, points);
+
 /** A position to click that hits a visible triangle not lower than `least`. */
 export const seenTriangle = (page, object, least = -Infinity) =>
   page.evaluate(([object, least]) => {

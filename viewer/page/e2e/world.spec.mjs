@@ -1,29 +1,13 @@
 // The world around the objects: floor, shadow, border, axes; shading, x-ray and the upward axis.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { camera, hasFrame, pause, picture, scenes, settled, swayingBalls, until } from "./harness.mjs";
+import { camera, coloursAt, hasFrame, pause, picture, scenes, settled, swayingBalls, until } from "./harness.mjs";
 
 const ball = (more = "") => `[[object]]\nname = "ball"\nmodel = "icosphere"\nfrequency = 4\n${more}\n`;
 const box = (page, name) => page.getByRole("group", { name: "View" }).getByRole("checkbox", { name });
 const ground = (page) => page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).map(Number));
 const brightness = ([red, green, blue]) => red + green + blue;
 const isNear = (a, b) => a.every((value, i) => Math.abs(value - b[i]) <= 3);
-
-/** The colours of the picture at points of the scene. */
-const coloursAt = (page, points) =>
-  page.evaluate((points) => {
-    supple.draw();  // the canvas keeps its content only until the end of this task
-    const view = document.querySelector("canvas.view");
-    const copy = Object.assign(document.createElement("canvas"), { width: view.width, height: view.height });
-    const context = copy.getContext("2d");
-    context.drawImage(view, 0, 0);
-    const frame = view.getBoundingClientRect();
-    const scale = view.width / frame.width;
-    return points.map((point) => {
-      const { x, y } = supple.project(point);
-      return [...context.getImageData(Math.round((x - frame.left) * scale), Math.round((y - frame.top) * scale), 1, 1).data].slice(0, 3);
-    });
-  }, points);
 
 /** A page that shows a scene, paused unless `plays`. */
 async function open(stage, scene, plays = false) {

@@ -166,6 +166,10 @@ export class Model extends Emitter<ModelEvents> {
   smooth = true;
   /** Whether surfaces are so transparent that everything inside is visible. */
   xray = false;
+  /** The axis across which surfaces are cut open, where along it from 0 to 1, and which side is removed. */
+  slice: "off" | "x" | "y" | "z" = "off";
+  sliceAt = 0.5;
+  sliceFlipped = false;
   /** The upward axis. */
   up: "y" | "z" = "y";
   pointSize = 5;

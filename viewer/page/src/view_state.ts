@@ -7,7 +7,7 @@ import { LAYERS, type Layer, type Model, type NodeChoice } from "./model";
 import type { CameraRig, CameraState } from "./view/camera";
 
 /** Numbers and switches of the model that are part of a view. */
-const MARKS = ["throughSurfaces", "pointSize", "normalLength", "smooth", "xray", "up"] as const;
+const MARKS = ["throughSurfaces", "pointSize", "normalLength", "smooth", "xray", "slice", "sliceAt", "sliceFlipped", "up"] as const;
 type Marks = Pick<Model, (typeof MARKS)[number]>;
 
 export interface ViewState {
@@ -70,6 +70,7 @@ export function showView(model: Model, view: Partial<ViewState>): void {
   if (isRecord(marks))
     for (const name of MARKS) if (typeof marks[name] === typeof model[name]) (model as unknown as Record<string, unknown>)[name] = marks[name];
   if (model.up !== "z") model.up = "y";
+  if (!["x", "y", "z"].includes(model.slice)) model.slice = "off";
   if (isRecord(objects))
     for (const object of model.objects) {
       const kept = Object.hasOwn(objects, object.name) ? objects[object.name] : undefined;

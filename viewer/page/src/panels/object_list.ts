@@ -76,9 +76,14 @@ export class ObjectList {
       () => new ObjectRow(model, () => this.listed, () => this.shown(), frameObject),
     );
     const all = h("button", { type: "button", class: "link", title: "Show or hide all listed objects", onclick: () => this.toggleAll() }, "all");
-    this.element = h("section", { class: "grow" }, h("h2", {}, "Objects", all), this.filter, this.nothing, this.window.element);
+    const only = h("button", { type: "button", class: "link", title: "Show only the selected object, or all again", onclick: () => this.isolate() }, "only selected");
+    this.element = h("section", { class: "grow" }, h("h2", {}, "Objects", h("span", { class: "links" }, only, all)), this.filter, this.nothing, this.window.element);
     model.on("scene", () => this.build());
-    model.on("selection", () => this.showSelected());
+    only.disabled = true;
+    model.on("selection", () => {
+      only.disabled = model.selection === null;
+      this.showSelected();
+    });
     model.on("display", () => this.window.draw());
   }
 
@@ -106,6 +111,15 @@ export class ObjectList {
   private toggleAll(): void {
     const show = this.listed.some((object) => !object.visible);
     for (const object of this.listed) object.visible = show;
+    this.shown();
+  }
+
+  /** Hides all other objects; shows all when they are hidden already. */
+  private isolate(): void {
+    const selected = this.model.selection?.object;
+    if (selected === undefined) return;
+    const isAlone = this.model.objects.every(({ index, visible }) => visible === (index === selected));
+    for (const object of this.model.objects) object.visible = isAlone || object.index === selected;
     this.shown();
   }
 

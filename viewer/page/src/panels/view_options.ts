@@ -1,4 +1,4 @@
-/** How the scene is drawn: shading, x-ray, the upward axis. */
+/** How the scene is drawn: shading, x-ray, a slice, the upward axis. */
 import type { Model } from "../model";
 import { h } from "./dom";
 
@@ -13,8 +13,10 @@ export class ViewOptions {
       this.box("Smooth", "Smooth shading; edges stay sharp", () => model.smooth, (on) => (model.smooth = on)),
       this.box("X-ray", "Makes all surfaces transparent", () => model.xray, (on) => (model.xray = on)),
       this.box("Z up", "The z axis points upward, otherwise the y axis", () => model.up === "z", (on) => (model.up = on ? "z" : "y")),
+      this.sliceField(),
       this.flat,
     );
+    this.refresh();
     model.on("display", () => this.refresh());
     model.on("scene", () => this.refresh());
   }
@@ -27,6 +29,30 @@ export class ViewOptions {
     this.shown.push(() => (box.checked = get()));
     box.checked = get();
     return h("label", { title }, box, label);
+  }
+
+  /** The axis of the slice, and where it cuts and which side is removed. */
+  private sliceField(): HTMLElement {
+    const { model } = this;
+    const changed = () => model.emit("display", null);
+    const axis = h("select", { "aria-label": "Slice", onchange: () => {
+      model.slice = axis.value as Model["slice"];
+      changed();
+    } }, ...(["off", "x", "y", "z"] as const).map((name) => h("option", { value: name }, name === "off" ? "no slice" : `slice in ${name}`)));
+    const at = h("input", { type: "range", min: 0, max: 1, step: "any", "aria-label": "Position of the slice", oninput: () => {
+      model.sliceAt = at.valueAsNumber;
+      changed();
+    } });
+    const flip = h("button", { type: "button", class: "link", title: "Remove the other side", onclick: () => {
+      model.sliceFlipped = !model.sliceFlipped;
+      changed();
+    } }, "flip");
+    this.shown.push(() => {
+      axis.value = model.slice;
+      if (at.valueAsNumber !== model.sliceAt) at.valueAsNumber = model.sliceAt;
+      at.hidden = flip.hidden = model.slice === "off";
+    });
+    return h("span", { class: "slice", title: "Cuts all surfaces open. Closed surfaces have caps, which are red where objects overlap." }, axis, at, flip);
   }
 
   private refresh(): void {

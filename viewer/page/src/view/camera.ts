@@ -161,6 +161,12 @@ export class CameraRig {
     this.go(to, this.controls.target.clone(), fly, this.camera.zoom);
   }
 
+  /** Turns around a point from now on, which moves to the middle of the view. */
+  pivot(point: THREE.Vector3): void {
+    const { position, zoom } = this.camera;
+    this.go(position.clone().add(point).sub(this.controls.target), point, true, zoom);
+  }
+
   private go(position: THREE.Vector3, target: THREE.Vector3, fly: boolean, zoom = 1): void {
     const from = { position: this.camera.position.clone(), target: this.controls.target.clone(), zoom: this.camera.zoom };
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -33,7 +33,9 @@ export interface Projection {
 
 // A mark lies on a surface or just below one, so it is tested as if it were `lift` nearer to the camera.
 const LIFTED = `
-  uniform float lift, size, extra, pixelRatio; uniform vec2 resolution;
+  uniform float lift, size, extra, pixelRatio; uniform vec2 resolution; uniform vec4 slice;
+  bool isCut(vec3 place) { return dot(slice.xyz, place) > slice.w; }
+  const vec4 nowhere = vec4(2.0, 2.0, 2.0, 1.0);
   vec4 lifted(vec4 at) {
     vec4 p = projectionMatrix * at, q = projectionMatrix * vec4(at.xy, at.z + lift, 1.0);
     if (q.w > 0.0) p.z = max(q.z / q.w, -0.999) * p.w;
@@ -58,7 +60,7 @@ abstract class Marks {
     if (style.colours) parts = { ...parts, tint: [1, stride - 1] };
     this.stream = new Stream(geometry, stride, parts, instanced);
     this.uniforms = {
-      resolution: shared.resolution, pixelRatio: shared.pixelRatio, lift: shared.lift,
+      resolution: shared.resolution, pixelRatio: shared.pixelRatio, lift: shared.lift, slice: shared.slice,
       colours: { value: colours.map((colour) => new THREE.Color(colour)) }, size: { value: style.size ?? 1 }, span: { value: 0 },
     };
     this.shape.visible = false;
@@ -142,7 +144,7 @@ export class Dots extends Marks {
       (geometry, material) => new THREE.Points(geometry, material),
       `flat out float across;
        void main() {
-         gl_Position = lifted(modelViewMatrix * vec4(position, 1.0));
+         gl_Position = isCut(position) ? nowhere : lifted(modelViewMatrix * vec4(position, 1.0));
          gl_PointSize = across = (size + extra) * pixelRatio;
          hue = colours[int(tint)];
        }`,
@@ -184,7 +186,7 @@ export class Lines extends Marks {
          vec4 at = isStart ? p : q;
          vec2 side = vec2(-along.y, along.x) * position.y * (size + extra) + along * (isStart ? -extra : extra);
          at.xy += side / resolution * at.w;
-         gl_Position = at;
+         gl_Position = isCut(start) ? nowhere : at;
          hue = colours[int(tint)];
        }`,
       "float cover() { return 1.0; }",

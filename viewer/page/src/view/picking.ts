@@ -20,8 +20,10 @@ interface Ray {
   direction: ArrayLike<number>;
 }
 
-/** The first triangle of one object along the ray, or null. Both faces of a triangle count. */
-export function pickTriangle(ray: Ray, object: ObjectState, farthest: number): Hit | null {
+type Kept = (x: number, y: number, z: number) => boolean;
+
+/** The first triangle of one object along the ray, or null. Both faces of a triangle count; points that are not kept do not. */
+export function pickTriangle(ray: Ray, object: ObjectState, farthest: number, keeps: Kept = () => true): Hit | null {
   const [ox, oy, oz] = [ray.origin[0]!, ray.origin[1]!, ray.origin[2]!];
   const [dx, dy, dz] = [ray.direction[0]!, ray.direction[1]!, ray.direction[2]!];
   const { positions: p, corners } = object;
@@ -43,7 +45,7 @@ export function pickTriangle(ray: Ray, object: ObjectState, farthest: number): H
     const v = (dx * qx + dy * qy + dz * qz) / determinant;
     if (!(v >= 0 && u + v <= 1)) continue;
     const t = (vx * qx + vy * qy + vz * qz) / determinant;
-    if (!(t > 0 && t < best)) continue;
+    if (!(t > 0 && t < best) || !keeps(ox + t * dx, oy + t * dy, oz + t * dz)) continue;
     best = t;
     found = i / 3;
     weights = [u, v];
@@ -75,14 +77,14 @@ function meets(ray: Ray, { lower, upper }: Bounds, farthest: number): boolean {
 }
 
 /** The first triangle of all visible objects. */
-export function pick(ray: Ray, objects: ObjectState[]): Hit | null {
+export function pick(ray: Ray, objects: ObjectState[], keeps: Kept = () => true): Hit | null {
   let first: Hit | null = null;
   let farthest = Infinity;
   for (const object of objects) {
     if (!object.visible || object.opacity < 0.05) continue;
     const bounds = boundsOf(object);
     if (!bounds || !meets(ray, bounds, farthest)) continue;
-    const hit = pickTriangle(ray, object, farthest);
+    const hit = pickTriangle(ray, object, farthest, keeps);
     if (!hit) continue;
     first = hit;
     farthest = hit.distance;

@@ -11,12 +11,13 @@ interface Style {
 }
 
 /** Uniforms shared by all primitives and marks; the view updates them. */
-export const shared = { resolution: { value: new THREE.Vector2(1, 1) }, pixelRatio: { value: 1 }, lift: { value: 0 } };
+export const shared = { resolution: { value: new THREE.Vector2(1, 1) }, pixelRatio: { value: 1 }, lift: { value: 0 }, slice: { value: new THREE.Vector4(0, 0, 0, 1) } };
 
 function materialOf(style: Style, vertexShader: string, fragmentShader: string): THREE.ShaderMaterial {
   return new THREE.ShaderMaterial({
     glslVersion: THREE.GLSL3,
     uniforms: {
+      slice: shared.slice,
       colour: { value: new THREE.Color(style.colour) },
       opacity: { value: style.opacity ?? 1 },
     },
@@ -60,14 +61,16 @@ export class Faces extends Primitive<THREE.Mesh<THREE.BufferGeometry, THREE.Shad
     this.stream = new Stream(geometry, 3, { position: [3, 0] }, false);
     const material = materialOf(
       style,
-      `out vec3 seen;
+      `out vec3 seen; out vec3 place;
        void main() {
          vec4 at = modelViewMatrix * vec4(position, 1.0);
          seen = at.xyz;
+         place = position;
          gl_Position = projectionMatrix * at;
        }`,
-      `in vec3 seen;
+      `uniform vec4 slice; in vec3 seen; in vec3 place;
        void main() {
+         if (dot(slice.xyz, place) > slice.w) discard;
          vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
          result = linearToOutputTexel(vec4(colour * (0.55 + 0.45 * abs(normal.z)), opacity));
        }`,

@@ -8,6 +8,7 @@ import { Layers } from "./layers";
 import { pick, type Hit } from "./picking";
 import type { Projection } from "./marks";
 import { shared } from "./primitives";
+import { Slice } from "./slice";
 import { obstacleOf, Surfaces } from "./surfaces";
 import { World } from "./world";
 
@@ -36,6 +37,7 @@ export class SceneView {
   private readonly scene = new THREE.Scene();
   private readonly surfaces = new Surfaces();
   private readonly world = new World();
+  private readonly slice: Slice;
   private shadowIsStale = true;
   private drawnInfo = { calls: 0, triangles: 0, points: 0 };
   private readonly highlights: Highlights;
@@ -50,15 +52,20 @@ export class SceneView {
   private takesPictures = false;
 
   constructor(readonly canvas: HTMLCanvasElement, private readonly model: Model) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.setClearAlpha(1);
     this.rig = new CameraRig(canvas, () => this.invalidate());
     this.layers = new Layers(model);
     this.highlights = new Highlights(model);
-    this.scene.add(this.world.group, this.surfaces.group, this.layers.group, this.highlights.group);
+    this.slice = new Slice(model, () => this.surfaces.counting);
+    this.scene.add(this.slice.group, this.world.group, this.surfaces.group, this.layers.group, this.highlights.group);
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
       this.onLost("The graphics card stopped drawing. The scene may be too large for it.");
+    });
+    canvas.addEventListener("dblclick", (event) => {
+      const hit = this.pickAt(event.clientX, event.clientY);
+      if (hit) this.rig.pivot(new THREE.Vector3(...hit.point));
     });
     model.on("scene", () => this.build());
     model.on("frame", (frame) => {
@@ -171,6 +178,7 @@ export class SceneView {
     const bounds = this.model.scene!.bounds;
     this.rig.setExtent(Math.hypot(...bounds[0], ...bounds[1]));
     shared.lift.value = 0.01 * Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!));
+    this.slice.build();
     this.placeWorld();
     this.checkMemory = true;
     this.highlights.showPull(null, null);
@@ -195,6 +203,7 @@ export class SceneView {
     if (smooth !== this.wasSmooth) this.surfaces.isSmooth = smooth;
     this.wasSmooth = smooth;
     if (up !== this.world.up) this.placeWorld();
+    this.slice.update(this.surfaces.geometry);
     this.shadowIsStale = true;
     this.refill();
   }
@@ -298,7 +307,7 @@ export class SceneView {
 
   pickAt(x: number, y: number): Hit | null {
     const { origin, direction } = this.rayAt(x, y);
-    return pick({ origin: origin.toArray(), direction: direction.toArray() }, this.model.objects);
+    return pick({ origin: origin.toArray(), direction: direction.toArray() }, this.model.objects, (x, y, z) => this.slice.keeps(x, y, z));
   }
 
   /** The point below the cursor, in the plane through `through` that faces the camera. */

@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import type { Layer, ObjectState } from "../model";
 import { writeNormals } from "./normals";
+import { shared } from "./primitives";
 
 /** Exceeds the buffer size of any graphics card. */
 const LARGEST_BUFFER = 0x80000000;
@@ -24,24 +25,31 @@ const CASTERS = new THREE.Vector2(0.4, 2);
 // Vertices of objects that a mesh does not draw are moved out of view.
 const VERTEX_SHADER = `
   uniform sampler2D looks; uniform vec2 drawn; uniform int selected; in uint object; in vec4 bent;
-  flat out vec4 look; flat out float glow; out vec3 seen; out vec3 smoothed;
+  flat out vec4 look; flat out float glow; out vec3 seen; out vec3 smoothed; out vec3 place;
   void main() {
     int number = int(object);
     look = texelFetch(looks, ivec2(number % ${LOOKS_WIDTH}, number / ${LOOKS_WIDTH}), 0);
     glow = number == selected ? 0.25 : 0.0;
     vec4 at = modelViewMatrix * vec4(position, 1.0);
     seen = at.xyz;
+    place = position;
     smoothed = mat3(modelViewMatrix) * bent.xyz;
     gl_Position = look.a >= drawn.x && look.a < drawn.y ? projectionMatrix * at : vec4(2.0, 2.0, 2.0, 1.0);
   }`;
 
+/** Removes what is on the removed side of the slice. */
+const CUT = `
+  uniform vec4 slice; in vec3 place;
+  void cut() { if (dot(slice.xyz, place) > slice.w) discard; }`;
+
 // The flat normal comes from screen-space derivatives, so deformation costs nothing. The smooth normal is a mean
 // over triangles; it is short at sharp edges, which stay flat. Light comes from the sky, from the floor and from a
 // lamp beside the camera.
-const SURFACE_SHADER = `
+const SURFACE_SHADER = `${CUT}
   uniform vec3 up; flat in vec4 look; flat in float glow; in vec3 seen; in vec3 smoothed; out vec4 result;
   const vec3 floorLight = vec3(0.30, 0.29, 0.28), lamp = normalize(vec3(0.35, 0.5, 0.8));
   void main() {
+    cut();
     vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
     float length = length(smoothed);
     vec3 even = length > 0.0 ? smoothed / length : normal;
@@ -54,6 +62,8 @@ const SURFACE_SHADER = `
     result = linearToOutputTexel(vec4(light * look.rgb + 0.03 * rim * above, look.a));
   }`;
 
+const COUNT_SHADER = `${CUT} out vec4 result; void main() { cut(); result = vec4(0.0); }`;
+
 // From below: darker where the surface is near the floor.
 const SHADOW_SHADER = `
   out vec4 result;
@@ -62,9 +72,9 @@ const SHADOW_SHADER = `
     result = vec4(0.0, 0.0, 0.0, 0.9 * near * near);
   }`;
 
-const WIREFRAME_SHADER = `
+const WIREFRAME_SHADER = `${CUT}
   uniform vec4 ink; flat in vec4 look; out vec4 result;
-  void main() { result = linearToOutputTexel(ink.a > 0.0 ? ink : vec4(look.rgb, 1.0)); }`;
+  void main() { cut(); result = linearToOutputTexel(ink.a > 0.0 ? ink : vec4(look.rgb, 1.0)); }`;
 
 /** The colour of the wireframe over surfaces. Without surfaces it has the colours of the objects. */
 const WIREFRAME_COLOUR = new THREE.Color("#101418");
@@ -149,7 +159,7 @@ export class Surfaces {
   private readonly stale = new Set<number>();
   private isNew = true;
   private readonly uniforms = {
-    looks: { value: makeLooks(0) }, selected: { value: -1 }, ink: { value: new THREE.Vector4() }, up: { value: new THREE.Vector3(0, 1, 0) },
+    looks: { value: makeLooks(0) }, selected: { value: -1 }, ink: { value: new THREE.Vector4() }, up: { value: new THREE.Vector3(0, 1, 0) }, slice: shared.slice,
   };
   private readonly opaque = new THREE.Mesh(new THREE.BufferGeometry(), this.material(OPAQUE, SURFACE_SHADER));
   private readonly transparent = new THREE.Mesh(new THREE.BufferGeometry(), this.material(TRANSPARENT, SURFACE_SHADER));
@@ -274,6 +284,15 @@ export class Surfaces {
     if (this.wireframe.visible && !this.wireframe.geometry.index) this.wireframe.geometry.setIndex(sentOnce(edgesOf(cornersOf(this.objects))));
     const { r, g, b } = WIREFRAME_COLOUR;
     this.uniforms.ink.value.set(r, g, b, layers.surface ? WIREFRAME_OPACITY : 0);
+  }
+
+  /** For counting how many surfaces a ray passes. */
+  get counting(): THREE.ShaderMaterial {
+    return this.material(ALL, COUNT_SHADER);
+  }
+
+  get geometry(): THREE.BufferGeometry {
+    return this.opaque.geometry;
   }
 
   /** Highlights one object, or none. */
