@@ -167,9 +167,10 @@ export class World {
     this.side = side;
     const step = this.gridUniforms.step.value;
     const apart = 0.18 * step;
-    const along = (axis: "x" | "y" | "z", across: "x" | "y" | "z"): Label[] => {
+    const along = (axis: "x" | "y" | "z", across: "x" | "y" | "z", room: number): Label[] => {
       const from = center["xyz".indexOf(axis)]!;
-      const values = ticks(from + lower[axis], from + upper[axis], step);
+      const corner = from + (isUpper(axis) ? upper : lower)[axis];
+      const values = ticks(from + lower[axis], from + upper[axis], step).filter((value) => Math.abs(value - corner) >= room);
       return values.map((value) => {
         const at = new THREE.Vector3();
         at[this.up] = this.level;
@@ -179,7 +180,7 @@ export class World {
         return { text: unit !== "" ? `${text} ${unit}` : text, at: at.toArray() };
       });
     };
-    this.labels.show([...along(u, v), ...along(v, u)]);
+    this.labels.show([...along(u, v, 0), ...along(v, u, 0.4 * step)]);  // one label at the common corner
   }
 
   /** Call before each drawing. */
