@@ -1,0 +1,163 @@
+// Small windows, zoom, large fonts, touch, and accessibility.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { pause, scenes, settled, until } from "./harness.mjs";
+
+const nine = join(scenes, "nine.toml");
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const TABS = ["Inspect", "Contacts", "Curves", "Plots", "Settings"];
+
+async function open(stage, options) {
+  const program = await stage.program(nine);
+  const page = await stage.page(options);
+  await page.goto(program.address);
+  await until(page, () => (window.supple?.model.frame?.text.step ?? 0) > 20);
+  await pause(page);
+  return page;
+}
+
+/** Scrolls to the element, and fails when its middle is not visible or something else covers it. */
+async function isReachable(page, locator) {
+  await locator.scrollIntoViewIfNeeded();
+  const covered = await locator.evaluate((element) => {
+    const { left, top, width, height } = element.getBoundingClientRect();
+    const [x, y] = [left + width / 2, top + height / 2];
+    const hit = document.elementFromPoint(x, y);
+    return element.contains(hit) || hit?.contains(element) || hit?.closest("label") ? null : `${element.outerHTML.slice(0, 90)} at ${x}, ${y} is below ${hit?.outerHTML.slice(0, 90)}`;
+  });
+  assert.equal(covered, null);
+}
+
+/** Opens each drawer and tab by `press`, and reaches what is in them. */
+async function reachesEverything(page, press) {
+  const opens = async (name) => {
+    const button = page.getByRole("button", { name, exact: true });
+    await isReachable(page, button);
+    await press(button);
+    await until(page, (name) => document.body.dataset.drawer === name, name.toLowerCase());
+  };
+  const closes = async (name) => {
+    await press(page.getByRole("button", { name: `Close ${name}` }));
+    await until(page, () => !document.body.dataset.drawer);
+  };
+  for (const name of ["Frame all", "Save a picture", "Light or dark", "Keyboard shortcuts", "Play"]) await isReachable(page, page.getByRole("button", { name }));
+  for (const name of ["Select", "Grab and pull", "Why no contact?"]) await isReachable(page, page.getByRole("radio", { name }));
+  await isReachable(page, page.getByRole("combobox", { name: "Speed" }));
+  await isReachable(page, page.locator("canvas.view"));
+  await opens("Scene");
+  for (const name of ["Show pawn 1", "Wireframe", "Contact points"]) await isReachable(page, page.getByRole("checkbox", { name }));
+  await closes("Scene");
+  await opens("Details");
+  for (const name of TABS) {
+    const tab = page.getByRole("tab", { name });
+    await isReachable(page, tab);
+    await press(tab);
+    assert.equal(await tab.getAttribute("aria-selected"), "true");
+    await isReachable(page, page.locator(`#page-${name}`));
+  }
+  await isReachable(page, page.getByLabel("Time step"));
+  await closes("Details");
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  assert.equal(overflow, 0, "the page scrolls sideways");
+}
+
+const tap = (locator) => locator.tap();
+const byKey = async (locator) => {
+  await locator.focus();
+  await locator.press("Enter");
+};
+
+async function bySizes(stage) {
+  for (const [width, height] of [[800, 600], [390, 800]]) {
+    const page = await open(stage, { viewport: { width, height }, hasTouch: true });
+    await reachesEverything(page, tap);
+  }
+}
+
+/** 400 % of a window of 1280 × 1024. */
+async function byZoom(stage) {
+  const page = await open(stage, { viewport: { width: 320, height: 256 }, hasTouch: true });
+  await reachesEverything(page, tap);
+}
+
+async function byKeys(stage) {
+  const page = await open(stage, { viewport: { width: 390, height: 800 } });
+  await reachesEverything(page, byKey);
+  // The focus follows: into a drawer, and back to its button by Escape.
+  const button = page.getByRole("button", { name: "Details", exact: true });
+  await byKey(button);
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "Close Details");
+  await page.keyboard.press("Escape");
+  await until(page, () => !document.body.dataset.drawer);
+  assert.ok(await button.evaluate((element) => element === document.activeElement));
+}
+
+async function byFont(stage) {
+  for (const width of [1440, 390]) {
+    const page = await open(stage, { viewport: { width, height: 900 } });
+    const height = () => page.getByRole("button", { name: "Frame all" }).evaluate((element) => element.getBoundingClientRect().height);
+    const before = await height();
+    await page.addStyleTag({ content: "html { font-size: 200% }" });
+    assert.ok(Math.abs((await height()) - 2 * before) < 3, "sizes do not follow the font");
+    await reachesEverything(page, byKey);
+  }
+}
+
+/** Text has at least 12 pixels. */
+async function textIsLargeEnough(stage) {
+  const page = await open(stage);
+  for (const name of TABS) {
+    await page.getByRole("tab", { name }).click();
+    await settled(page);
+    const small = await page.evaluate(() =>
+      [...document.querySelectorAll("body *")]
+        .filter((element) => element.checkVisibility() && [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.textContent.trim()))
+        .filter((element) => parseFloat(getComputedStyle(element).fontSize) < 12)
+        .map((element) => `${element.outerHTML.slice(0, 80)}: ${getComputedStyle(element).fontSize}`),
+    );
+    assert.deepEqual(small, []);
+  }
+}
+
+async function accessible(stage) {
+  for (const colorScheme of ["dark", "light"]) {
+    for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 800 }]) {
+      const page = await open(stage, { viewport, colorScheme });
+      await page.evaluate(axe);
+      const check = async (place) => {
+        const found = await page.evaluate(async () => {
+          const { violations } = await window.axe.run(document, { resultTypes: ["violations"] });
+          return violations
+            .filter(({ impact }) => impact === "serious" || impact === "critical")
+            .map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html, any }) => `${html.slice(0, 100)} (${any[0]?.message ?? ""})`).join("; ")}`);
+        });
+        assert.deepEqual(found, [], `${place}, ${colorScheme}, ${viewport.width}`);
+      };
+      const isNarrow = viewport.width < 900;
+      await check("view");
+      if (isNarrow) {
+        await page.getByRole("button", { name: "Scene", exact: true }).click();
+        await check("Scene");
+        await page.getByRole("button", { name: "Close Scene" }).click();
+        await page.getByRole("button", { name: "Details", exact: true }).click();
+      }
+      for (const name of TABS) {
+        await page.getByRole("tab", { name }).click();
+        await settled(page);
+        await check(name);
+      }
+    }
+  }
+}
+
+export const tests = [
+  ["everything is reached at 800 and 390 pixels by touch", bySizes],
+  ["everything is reached at 400 % zoom by touch", byZoom],
+  ["everything is reached at 390 pixels by keys", byKeys],
+  ["everything is reached with a font of 200 %", byFont],
+  ["text is large enough", textIsLargeEnough],
+  ["axe has no serious findings", accessible],
+];
