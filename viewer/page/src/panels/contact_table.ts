@@ -4,7 +4,7 @@ import type { Model } from "../model";
 import { h, readable } from "./dom";
 import { makeRow, RowWindow, type Row } from "./row_window";
 
-const ROW_HEIGHT = 24;
+const ROW_HEIGHT = 1.5;  // in rem
 const rounded = (value: number): string => String(Number(value.toPrecision(3)));
 
 interface Single {

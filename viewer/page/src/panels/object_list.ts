@@ -3,7 +3,7 @@ import type { Model, ObjectState } from "../model";
 import { h, readable } from "./dom";
 import { RowWindow, type Row } from "./row_window";
 
-const ROW_HEIGHT = 27;
+const ROW_HEIGHT = 1.6875;  // in rem
 /** The filter appears from this many objects on. */
 const FEWEST_TO_FILTER = 13;
 

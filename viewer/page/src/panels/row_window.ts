@@ -1,5 +1,5 @@
 /** A virtual list: only visible rows have elements. */
-import { h } from "./dom";
+import { h, remPixels } from "./dom";
 
 /** Browsers do not lay out elements higher than this. */
 const HIGHEST = 8_000_000;
@@ -67,11 +67,15 @@ export class RowWindow<Kind extends Row> {
   private first = 0;
 
   constructor(
-    attributes: Parameters<typeof h>[1], private readonly body: HTMLElement, private readonly rowHeight: number, private readonly makeRow: () => Kind,
+    attributes: Parameters<typeof h>[1], private readonly body: HTMLElement, private readonly rowRems: number, private readonly makeRow: () => Kind,
   ) {
     this.spacer = h("div", { class: "spacer" }, body);
     this.element = h("div", { ...attributes, onscroll: () => this.draw() }, this.spacer);
     new ResizeObserver(() => this.draw()).observe(this.element);
+  }
+
+  private get rowHeight(): number {
+    return this.rowRems * remPixels();
   }
 
   private get scale(): RowScale {
@@ -88,6 +92,7 @@ export class RowWindow<Kind extends Row> {
   draw(): void {
     const { scale } = this;
     if (scale.boxHeight === 0) return;  // the list is hidden
+    this.spacer.style.height = `${scale.scrollHeight}px`;  // the font may have changed
     const { first, shown, top } = scale.inSight(this.element.scrollTop);
     this.moveTo(first);
     while (this.rows.length < shown) {
