@@ -1,3 +1,4 @@
+#include <dirent.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -6,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <optional>
 #include <set>
@@ -68,12 +70,17 @@ void remove_files_of_old_ranks(const fs::path& path, const std::set<std::uint32_
   std::set<fs::path> used;
   for (const std::uint32_t rank : ranks) used.insert(file_of_rank(path, rank).filename());
   const std::string start = path.stem().string() + ".rank";
-  std::error_code error;
-  for (fs::directory_iterator entry(path.has_parent_path() ? path.parent_path() : ".", error), end;
-       !error && entry != end; entry.increment(error)) {
-    const fs::path name = entry->path().filename();
-    if (name.string().starts_with(start) && !used.contains(name) && is_file_of_rank(entry->path().string()))
-      unlink(entry->path().c_str());
+  // `std::filesystem::directory_iterator` ends the program when memory runs out.
+  struct Close {
+    void operator()(DIR* folder) const { closedir(folder); }
+  };
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
+  const std::unique_ptr<DIR, Close> folder(opendir(parent.c_str()));
+  while (const dirent* const entry = folder ? readdir(folder.get()) : nullptr) {
+    const std::string name = entry->d_name;
+    const fs::path file = parent / name;
+    if (name.starts_with(start) && !used.contains(name) && is_file_of_rank(file.string()))
+      unlink(file.c_str());
   }
 }
 
