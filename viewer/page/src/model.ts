@@ -164,6 +164,8 @@ export class Model extends Emitter<ModelEvents> {
   throughSurfaces = true;
   /** Whether surfaces are shaded smooth. */
   smooth = true;
+  /** Whether creases and gaps are dark. Off without a graphics card, and when drawing is slow. */
+  occlusion = false;
   /** Whether surfaces are so transparent that everything inside is visible. */
   xray = false;
   /** The axis across which surfaces are cut open, where along it from 0 to 1, and which side is removed. */
