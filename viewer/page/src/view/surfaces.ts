@@ -150,6 +150,8 @@ export class Surfaces {
   readonly group = new THREE.Group();
   /** What casts the shadow. */
   readonly casters = new THREE.Scene();
+  /** Opaque surfaces alone, for their depths. */
+  readonly solids = new THREE.Scene();
   /** Whether objects are shaded flat because too many triangles move. */
   isTooLarge = false;
   private objects: ObjectState[] = [];
@@ -164,6 +166,7 @@ export class Surfaces {
   private readonly opaque = new THREE.Mesh(new THREE.BufferGeometry(), this.material(OPAQUE, SURFACE_SHADER));
   private readonly transparent = new THREE.Mesh(new THREE.BufferGeometry(), this.material(TRANSPARENT, SURFACE_SHADER));
   private readonly caster = new THREE.Mesh(new THREE.BufferGeometry(), this.material(CASTERS, SHADOW_SHADER));
+  private readonly solid = new THREE.Mesh(new THREE.BufferGeometry(), this.material(OPAQUE, COUNT_SHADER));
   private readonly wireframe = new THREE.LineSegments(new THREE.BufferGeometry(), this.material(ALL, WIREFRAME_SHADER));
 
   constructor() {
@@ -175,7 +178,8 @@ export class Surfaces {
     this.transparent.material.forceSinglePass = false;  // back faces first: the inside is visible through the outside
     this.group.add(this.opaque, this.transparent, this.wireframe);
     this.casters.add(this.caster);
-    for (const shape of [...this.group.children, this.caster]) shape.frustumCulled = false;  // bounds would need an update in each frame
+    this.solids.add(this.solid);
+    for (const shape of [...this.group.children, this.caster, this.solid]) shape.frustumCulled = false;  // bounds would need an update in each frame
   }
 
   private material(drawn: THREE.Vector2, fragmentShader: string): THREE.ShaderMaterial {
@@ -207,7 +211,7 @@ export class Surfaces {
       shape.geometry = new THREE.BufferGeometry().setAttribute("position", attribute).setAttribute("object", number).setAttribute("bent", normals);
       shape.geometry.boundingSphere = new THREE.Sphere();  // three.js sorts by it and would otherwise visit all vertices
     }
-    this.transparent.geometry = this.caster.geometry = this.opaque.geometry.setIndex(sentOnce(cornersOf(objects)));
+    this.transparent.geometry = this.caster.geometry = this.solid.geometry = this.opaque.geometry.setIndex(sentOnce(cornersOf(objects)));
   }
 
   /** Marks positions as changed. Only visible objects are uploaded; the others wait. */
