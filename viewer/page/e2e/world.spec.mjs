@@ -115,6 +115,25 @@ async function largeSurfacesAreFlat(stage) {
   await page.getByText("Flat for now").waitFor({ state: "hidden" });
 }
 
+/** The crease between two balls is darker with occlusion, and marks are not. */
+async function creasesAreDark(stage) {
+  const page = await open(stage, `${ball("translate = [-0.8, 0, 0]")}${ball("translate = [0.8, 0, 0]")}`);
+  await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
+  for (const label of ["Intersecting triangles", "Contact points", "Contact segments"]) await page.getByRole("checkbox", { name: label }).uncheck();
+  await settled(page);
+  assert.equal(await box(page, "Occlusion").isChecked(), false, "it is on without a graphics card");
+  const places = [[-0.02, 0, 0.6], [-0.8, 0.3, 0.9]];
+  const [crease, front] = await coloursAt(page, places);
+  await box(page, "Occlusion").check();
+  await settled(page);
+  const [darkCrease, sameFront] = await coloursAt(page, places);
+  assert.ok(brightness(darkCrease) < brightness(crease) - 15, `the crease is ${crease} and ${darkCrease}`);
+  assert.ok(Math.abs(brightness(front) - brightness(sameFront)) < 20, `the front is ${front} and ${sameFront}`);
+  await page.getByRole("button", { name: "Orthographic" }).click();
+  await settled(page);
+  await box(page, "Occlusion").uncheck();
+}
+
 async function xrayShowsTheInside(stage) {
   const page = await open(stage, `${ball()}[[object]]\nname = "inner"\nmodel = "icosphere"\nscale = 0.3\n`);
   await settled(page);
@@ -158,6 +177,7 @@ export const tests = [
   ["the first view shows what moves", firstViewShowsWhatMoves],
   ["smooth or flat", smoothOrFlat],
   ["very large surfaces are flat", largeSurfacesAreFlat],
+  ["creases are dark", creasesAreDark],
   ["x-ray shows the inside", xrayShowsTheInside],
   ["z is up", zIsUp],
 ];

@@ -7,7 +7,7 @@ import { LAYERS, type Layer, type Model, type NodeChoice } from "./model";
 import type { CameraRig, CameraState } from "./view/camera";
 
 /** Numbers and switches of the model that are part of a view. */
-const MARKS = ["throughSurfaces", "pointSize", "normalLength", "smooth", "xray", "slice", "sliceAt", "sliceFlipped", "up"] as const;
+const MARKS = ["throughSurfaces", "pointSize", "normalLength", "smooth", "occlusion", "xray", "slice", "sliceAt", "sliceFlipped", "up"] as const;
 type Marks = Pick<Model, (typeof MARKS)[number]>;
 
 export interface ViewState {

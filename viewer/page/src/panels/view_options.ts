@@ -11,6 +11,7 @@ export class ViewOptions {
     this.element = h(
       "div", { class: "options", role: "group", "aria-label": "View" },
       this.box("Smooth", "Smooth shading; edges stay sharp", () => model.smooth, (on) => (model.smooth = on)),
+      this.box("Occlusion", "Ambient occlusion: darkens creases and narrow gaps. Off without a graphics card, and when drawing is slow", () => model.occlusion, (on) => (model.occlusion = on)),
       this.box("X-ray", "Makes all surfaces transparent", () => model.xray, (on) => (model.xray = on)),
       this.box("Z up", "The z axis points upward, otherwise the y axis", () => model.up === "z", (on) => (model.up = on ? "z" : "y")),
       this.sliceField(),

@@ -5,6 +5,7 @@ import { boundsOf, boundsOfAll, type Bounds, type Model, type ObjectState } from
 import { CameraRig } from "./camera";
 import { Highlights } from "./highlights";
 import { Layers } from "./layers";
+import { Occlusion } from "./occlusion";
 import { pick, type Hit } from "./picking";
 import type { Projection } from "./marks";
 import { shared } from "./primitives";
@@ -16,6 +17,9 @@ import { World } from "./world";
 const FIRST_DIRECTION = new THREE.Vector3(0.55, 0.7, 1);
 
 const XRAY_OPACITY = 0.3;
+/** After this many pictures in a row that take longer than this, drawing becomes simpler. */
+const SLOW_TURNS = 30;
+const SLOW_MILLISECONDS = 40;
 /** How far objects within a border may move and stay in the first view, relative to their size together. */
 const ROOM = 0.25;
 
@@ -38,6 +42,9 @@ export class SceneView {
   private readonly surfaces = new Surfaces();
   private readonly world = new World();
   private readonly slice: Slice;
+  private readonly occlusion = new Occlusion();
+  private slowTurns = 0;
+  private lastTurn = 0;
   private shadowIsStale = true;
   private drawnInfo = { calls: 0, triangles: 0, points: 0 };
   private readonly highlights: Highlights;
@@ -54,6 +61,7 @@ export class SceneView {
   constructor(readonly canvas: HTMLCanvasElement, private readonly model: Model) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.setClearAlpha(1);
+    model.occlusion = !drawsInSoftware(this.renderer.getContext());
     this.rig = new CameraRig(canvas, () => this.invalidate());
     this.layers = new Layers(model);
     this.highlights = new Highlights(model);
@@ -357,9 +365,20 @@ export class SceneView {
     this.rig.advance(now);
     this.onTurn();
     if (!this.dirty || this.takesPictures) return;
+    this.simplifyWhenSlow(now);
     this.draw();
     this.times.push(now);
     if (this.times.length > 600) this.times.splice(0, 300);
+  }
+
+  /** Switches occlusion off after many slow pictures in a row. */
+  private simplifyWhenSlow(now: number): void {
+    const took = now - this.lastTurn;
+    this.lastTurn = now;
+    this.slowTurns = took > SLOW_MILLISECONDS && took < 1000 ? this.slowTurns + 1 : 0;
+    if (!this.model.occlusion || this.slowTurns < SLOW_TURNS) return;
+    this.model.occlusion = false;
+    this.model.emit("display", null);
   }
 
   /** Draws immediately, so that the canvas can be read in the same task. */
@@ -373,15 +392,36 @@ export class SceneView {
       this.lowerFloor();
       this.world.shadow.draw(this.renderer, this.surfaces.casters);
     }
-    this.renderer.render(this.scene, this.rig.camera);
-    const { calls, triangles, points } = this.renderer.info.render;
-    this.drawnInfo = { calls, triangles, points };
+    this.drawScene();
     if (this.world.group.visible) this.world.drawTriad(this.renderer, this.rig.camera);
     if (this.checkMemory && this.model.frame) {
       this.checkMemory = false;
       const gl = this.renderer.getContext();
       if (gl.getError() === gl.OUT_OF_MEMORY) this.onLost("The graphics card does not have enough memory for this scene.");
     }
+  }
+
+  /** With occlusion, marks come in a second pass, so that it does not darken them. */
+  private drawScene(): void {
+    const { renderer, scene, rig: { camera } } = this;
+    const marks = [this.layers.group, this.highlights.group];
+    const others = scene.children.filter((child) => !marks.includes(child as THREE.Group));
+    const occludes = this.model.occlusion && this.model.layers.surface && this.world.group.visible;
+    if (occludes) for (const group of marks) group.visible = false;
+    renderer.render(scene, camera);
+    const { calls, triangles, points } = renderer.info.render;
+    this.drawnInfo = { calls, triangles, points };
+    if (!occludes) return;
+    const [lower, upper] = this.model.scene?.bounds ?? [[0, 0, 0], [1, 1, 1]];
+    this.occlusion.draw(renderer, this.surfaces.solids, camera, Math.hypot(...upper.map((x, axis) => x - lower[axis]!)));
+    const were = others.map(({ visible }) => visible);
+    for (const group of others) group.visible = false;
+    for (const group of marks) group.visible = true;
+    renderer.autoClear = false;
+    renderer.render(scene, camera);
+    renderer.autoClear = true;
+    others.forEach((group, i) => (group.visible = were[i]!));
+    this.drawnInfo.points += renderer.info.render.points;
   }
 
   /** Chooses the marks to draw for the camera of this drawing. */
@@ -401,4 +441,9 @@ export class SceneView {
   statistics(): { calls: number; triangles: number; points: number } {
     return this.drawnInfo;
   }
+}
+
+function drawsInSoftware(gl: WebGLRenderingContext | WebGL2RenderingContext): boolean {
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  return /swiftshader|llvmpipe|software|basic render/i.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
 }

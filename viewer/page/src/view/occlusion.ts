@@ -1,0 +1,54 @@
+/** Darkens creases and narrow gaps, which light hardly reaches. */
+import * as THREE from "three";
+import { GTAOPass } from "three/addons/postprocessing/GTAOPass.js";
+import { FullScreenQuad } from "three/addons/postprocessing/Pass.js";
+
+type Camera = THREE.PerspectiveCamera | THREE.OrthographicCamera;
+
+/** Relative to the size of the scene: how far surfaces darken one another. */
+const REACH = 0.05;
+const STRENGTH = 0.85;
+
+export class Occlusion {
+  private pass: GTAOPass | null = null;
+  private camera: Camera | null = null;
+  private readonly quad = new FullScreenQuad();
+  /** Half the resolution of the picture is enough, because the result is blurred. */
+  private readonly target = new THREE.WebGLRenderTarget(1, 1, { depthTexture: new THREE.DepthTexture(1, 1, THREE.UnsignedIntType) });
+
+  /** Darkens the picture that is on the screen. `solids` has the surfaces that darken and are darkened. */
+  draw(renderer: THREE.WebGLRenderer, solids: THREE.Scene, camera: Camera, sceneSize: number): void {
+    const { drawingBufferWidth, drawingBufferHeight } = renderer.getContext();
+    const [width, height] = [Math.ceil(drawingBufferWidth / 2), Math.ceil(drawingBufferHeight / 2)];
+    const pass = this.passOf(camera, solids, width, height);
+    if (this.target.width !== width || this.target.height !== height) {
+      this.target.setSize(width, height);
+      pass.setSize(width, height);
+    }
+    const reach = REACH * sceneSize;
+    pass.updateGtaoMaterial({ radius: reach, thickness: reach, distanceExponent: 1, distanceFallOff: 1, scale: 1, samples: 16, screenSpaceRadius: false });
+    renderer.setRenderTarget(this.target);
+    renderer.clear();
+    renderer.render(solids, camera);
+    pass.render(renderer, this.target, this.target, 0, false);
+    const { autoClear } = renderer;
+    renderer.autoClear = false;
+    renderer.setRenderTarget(null);
+    pass.blendMaterial.uniforms["intensity"]!.value = STRENGTH;
+    pass.blendMaterial.uniforms["tDiffuse"]!.value = pass.pdRenderTarget.texture;
+    this.quad.material = pass.blendMaterial;
+    this.quad.render(renderer);
+    renderer.autoClear = autoClear;
+  }
+
+  /** The pass depends on the kind of the camera. */
+  private passOf(camera: Camera, solids: THREE.Scene, width: number, height: number): GTAOPass {
+    if (this.pass && this.camera === camera) return this.pass;
+    this.pass?.dispose();
+    this.camera = camera;
+    this.pass = new GTAOPass(solids, camera, width, height);
+    this.pass.setGBuffer(this.target.depthTexture!, undefined);  // normals come from the depths
+    this.pass.output = GTAOPass.OUTPUT.Off;
+    return this.pass;
+  }
+}
