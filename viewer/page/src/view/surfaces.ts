@@ -203,6 +203,7 @@ export class Surfaces {
     const normals = new THREE.BufferAttribute(new Int16Array((4 * positions.length) / 3), 4, true).setUsage(THREE.DynamicDrawUsage);
     this.normals = normals.onUpload(() => normals.clearUpdateRanges());
     this.isNew = true;
+    this.stale.clear();
     const numbers = new Uint32Array(positions.length / 3);
     let first = 0;
     for (const { index, vertices } of objects) numbers.fill(index, first, (first += vertices));
