@@ -6,7 +6,7 @@ const GROUPS: [string, [string, string][]][] = [
     [". ,", "next, previous event"], ["[ ]", "slower, faster"], ["L", "loop a recording"], ["R", "restart with the seed"],
   ]],
   ["Look", [
-    ["drag", "orbit; right button or Shift: pan"], ["wheel", "zoom to the cursor"], ["Shift arrows", "orbit"], ["Alt arrows", "pan"], ["+ −", "zoom"],
+    ["drag", "orbit; right button or Shift: pan"], ["wheel", "zoom to the cursor"], ["double-click", "turn around this point"], ["Shift arrows", "orbit"], ["Alt arrows", "pan"], ["+ −", "zoom"],
     ["F", "frame all"], ["Shift F", "frame the selection"], ["1 … 6", "front, back, right, left, top, bottom"], ["O", "orthographic or perspective"],
   ]],
   ["Work", [
