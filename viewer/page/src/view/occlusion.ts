@@ -52,3 +52,9 @@ export class Occlusion {
     return this.pass;
   }
 }
+
+/** Occlusion takes too long without a graphics card. */
+export function drawsInSoftware(gl: WebGLRenderingContext | WebGL2RenderingContext): boolean {
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  return /swiftshader|llvmpipe|software|basic render/i.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
+}

@@ -5,7 +5,7 @@ import { boundsOf, boundsOfAll, type Bounds, type Model, type ObjectState } from
 import { CameraRig } from "./camera";
 import { Highlights } from "./highlights";
 import { Layers } from "./layers";
-import { Occlusion } from "./occlusion";
+import { drawsInSoftware, Occlusion } from "./occlusion";
 import { pick, type Hit } from "./picking";
 import type { Projection } from "./marks";
 import { shared } from "./primitives";
@@ -441,9 +441,4 @@ export class SceneView {
   statistics(): { calls: number; triangles: number; points: number } {
     return this.drawnInfo;
   }
-}
-
-function drawsInSoftware(gl: WebGLRenderingContext | WebGL2RenderingContext): boolean {
-  const names = gl.getExtension("WEBGL_debug_renderer_info");
-  return /swiftshader|llvmpipe|software|basic render/i.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
 }
