@@ -22,6 +22,7 @@
 #include "export/page_file.hpp"
 #include "inputs/inputs.hpp"
 #include "server/server.hpp"
+#include "session/messages/mesh_warnings.hpp"
 #include "session/packed/packed_scene.hpp"
 #include "session/session.hpp"
 #include "supple/error.hpp"
@@ -131,6 +132,8 @@ int run_view(const ViewOptions& options) {
   check_output_names({{"--export", options.page_file}}, input.files);
   apply(options, input);
   viewer::SceneView show = build_scene_view(input, options);
+  for (const std::string& warning : viewer::warnings_of_meshes(show))
+    fmt::print(stderr, "supple: warning: {}\n", one_line(warning));
   if (!options.page_file.empty()) return write_page(show, options);
   warn_of_missing_threads(options.scene.threads);
   return serve(std::move(show), options);

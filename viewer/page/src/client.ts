@@ -132,7 +132,7 @@ export class Client extends Emitter<ClientEvents> {
       case "scene": {
         const obstacle = this.obstacle(message.text.objects);
         if (obstacle) return this.end("too-large", obstacle);
-        this.scene = countsOf(message.text);
+        this.scene = countsOf(message);
         this.credit = 0;
         this.model.takeScene(message);
         this.send(this.model.request());

@@ -15,7 +15,11 @@ export interface ObjectState {
   kind: string;
   /** Current positions minus the scene's centre: a view into the model's `positions`. */
   positions: Float32Array;
+  /** The vertices of all elements, three for each: triangles, then edges and points, which repeat a vertex. */
   corners: Uint32Array;
+  /** Edges and points of no triangle: rods and particles. */
+  edges: Uint32Array;
+  points: Uint32Array;
   visible: boolean;
   colour: string;
   opacity: number;
@@ -146,6 +150,21 @@ function kindOf(object: SceneObject, source: SceneText["source"]): string {
   return object.waves ? "swaying" : "at rest";
 }
 
+function elementsOf(message: SceneMessage, object: number): Pick<ObjectState, "corners" | "edges" | "points"> {
+  const of = (list: Map<number, Uint32Array>) => list.get(object) ?? new Uint32Array(0);
+  const [triangles, edges, points] = [of(message.triangles), of(message.edges), of(message.points)];
+  if (edges.length + points.length === 0) return { corners: triangles, edges, points };
+  const corners = new Uint32Array(triangles.length + (3 * edges.length) / 2 + 3 * points.length);
+  corners.set(triangles);
+  let at = triangles.length;
+  for (let i = 0; i < edges.length; i += 2) {
+    corners.set([edges[i]!, edges[i + 1]!, edges[i + 1]!], at);
+    at += 3;
+  }
+  for (const point of points) corners.fill(point, at, (at += 3));
+  return { corners, edges, points };
+}
+
 export class Model extends Emitter<ModelEvents> {
   scene: SceneText | null = null;
   objects: ObjectState[] = [];
@@ -202,7 +221,7 @@ export class Model extends Emitter<ModelEvents> {
         isBody: object.body,
         kind: kindOf(object, message.text.source),
         positions: this.positions.subarray(first, (first += 3 * object.vertices)),
-        corners: message.triangles.get(index) ?? new Uint32Array(0),
+        ...elementsOf(message, index),
         visible: kept?.visible ?? true,
         colour: kept?.colour ?? objectColour(index),
         opacity: kept?.opacity ?? 1,

@@ -4,7 +4,7 @@ import { Beginnings, contactCount, findContact, isTouching, keyAt, kindAt, pairs
 import { countsOf, readMessage, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
 import { floats, FRAME, KIND, message, sceneMessage, text, words, type Section } from "./build_message";
 
-const counts = countsOf((readMessage(sceneMessage(), null) as SceneMessage).text);
+const counts = countsOf(readMessage(sceneMessage(), null) as SceneMessage);
 const frameOf = (...sections: Section[]) =>
   readMessage(message(KIND.frame, text(FRAME), ...sections), counts) as FrameMessage;
 

@@ -44,7 +44,7 @@ test("every kind of every record is read", { skip: folder === undefined }, () =>
       const buffer = new Uint8Array(bytes).buffer;
       for (const tag of tagsIn(buffer)) assert.ok(readsTag(tag), `the page does not read sections with the tag ${tag}`);
       const read = readMessage(buffer, counts);
-      if (read.kind === "scene") last = counts = countsOf(read.text);
+      if (read.kind === "scene") last = counts = countsOf(read);
       assert.ok(read.kind !== "failure", JSON.stringify(read.kind === "failure" && read.text));
       if (read.kind !== "frame") continue;
       contacts += useContacts(read, counts!);

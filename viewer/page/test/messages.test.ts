@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { countsOf, MessageError, readMessage, type FrameMessage, type SceneMessage, type SceneCounts } from "../src/protocol/messages";
+import { countsOf, MessageError, NONE, readMessage, type FrameMessage, type SceneMessage, type SceneCounts } from "../src/protocol/messages";
 import { floats, FRAME, frameMessage, KIND, message, SCENE, sceneMessage, seriesMessage, text, words, type Section } from "./build_message";
 
 const scene = readMessage(sceneMessage(), null) as SceneMessage;
-const counts: SceneCounts = countsOf(scene.text);
+const counts: SceneCounts = countsOf(scene);
 
 const reject = (buffer: ArrayBuffer, about: RegExp, of: SceneCounts | null = counts) =>
   assert.throws(() => readMessage(buffer, of), (error: unknown) => error instanceof MessageError && about.test(error.message));
@@ -178,4 +178,17 @@ test("changed bytes are read as a message or refused, never worse", () => {
     }
   }
   assert.ok(refused > 5000);
+});
+
+test("statistics have a row for each step, and edges and points of no triangle are elements", () => {
+  const rows = (numbers: number[]): Section => ({ tag: 43, object: NONE, count: numbers.length, data: new Float64Array(numbers) });
+  const frame = readMessage(message(KIND.frame, text(FRAME), rows([1, 2, 3, 4, 5, 6])), counts) as FrameMessage;
+  assert.deepEqual([...frame.steps], [1, 2, 3, 4, 5, 6]);
+  assert.deepEqual([...frame.statistics], [5, 6]);
+  assert.throws(() => readMessage(message(KIND.frame, text(FRAME), rows([1, 2, 3])), counts), MessageError);
+
+  const triangles = [words(16, 3, [0, 1, 2], 0), words(16, 3, [0, 1, 2, 1, 2, 3], 1)];
+  const loose = readMessage(message(KIND.scene, text(SCENE), ...triangles, words(17, 2, [0, 1, 1, 2], 1), words(18, 1, [3], 1)), null) as SceneMessage;
+  assert.deepEqual(countsOf(loose).triangles, [1, 5]);
+  assert.throws(() => readMessage(message(KIND.scene, text(SCENE), ...triangles, words(18, 1, [9], 1)), null), MessageError);
 });

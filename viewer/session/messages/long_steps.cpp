@@ -14,12 +14,12 @@ std::string digits_of(double value, auto... format) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format...).ptr};
 }
 
+}  // namespace
+
 std::string and_others(std::uint64_t count) {
   if (count == 0) return "";
   return " and " + std::to_string(count) + (count == 1 ? " other object" : " other objects");
 }
-
-}  // namespace
 
 LongSteps find_long_steps(const Simulation& simulation) {
   LongSteps steps;

@@ -23,4 +23,7 @@ std::optional<std::string> warning_of_long_steps(const LongSteps& steps, double 
 /// The same for a simulation.
 std::optional<std::string> warning_of_long_steps(const Simulation& simulation);
 
+/// ` and 2 other objects`; empty for none.
+std::string and_others(std::uint64_t count);
+
 }  // namespace supple::viewer

@@ -19,6 +19,8 @@ inline constexpr const char* names_of_message_kinds[] = {"", "scene", "frame", "
 enum class Tag : std::uint32_t {
   text = 1,
   triangles = 16,
+  edges = 17,
+  points = 18,
   positions = 32,
   object_pairs = 33,
   contacts = 34,

@@ -10,6 +10,7 @@
 
 #include "messages/described_json.hpp"
 #include "messages/long_steps.hpp"
+#include "messages/mesh_warnings.hpp"
 #include "messages/statistics.hpp"
 #include "sources/extent.hpp"
 #include "supple/result_descriptions.hpp"
@@ -207,12 +208,23 @@ void add_column_names(Stage& stage, JsonText& json) {
 }
 
 void add_warnings(Stage& stage, JsonText& json) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = warnings_of_meshes(stage.show());
   if (SimulationSource* const simulation = stage.simulation()) {
     if (auto warning = warning_of_long_steps(simulation->simulation()))
       warnings.push_back(std::move(*warning));
   }
   json.member("warnings", std::span<const std::string>(warnings));
+}
+
+/// Adds the edges or points of no triangle, in the order in which the scene numbers them; nothing when there are
+/// none.
+template <class Element>
+void add_elements(Tag tag, std::size_t object, const std::vector<Element>& of_mesh,
+                  const std::vector<Element>& of_options, MessageWriter& message) {
+  const std::size_t count = of_mesh.size() + of_options.size();
+  if (count == 0) return;
+  const auto sent = message.add<Element>(tag, static_cast<std::uint32_t>(object), count);
+  std::copy(of_mesh.begin(), of_mesh.end(), std::copy(of_options.begin(), of_options.end(), sent.begin()));
 }
 
 void add_events(Tag begin, Tag end, const Series::Events& events, MessageWriter& message) {
@@ -249,6 +261,9 @@ void pack_scene(Stage& stage, SceneNumbers numbers, JsonText& json, MessageWrite
     const std::vector<Triangle>& triangles = show.objects[i].mesh.triangles;
     const auto sent = message.add<Triangle>(Tag::triangles, static_cast<std::uint32_t>(i), triangles.size());
     std::copy(triangles.begin(), triangles.end(), sent.begin());
+    const ViewedObject& object = show.objects[i];
+    add_elements<std::array<std::uint32_t, 2>>(Tag::edges, i, object.mesh.edges, object.options.edges, message);
+    add_elements<std::uint32_t>(Tag::points, i, object.mesh.points, object.options.points, message);
   }
 }
 

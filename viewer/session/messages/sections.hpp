@@ -32,6 +32,10 @@ inline constexpr unsigned in_texts = in_scene | in_frame | 1u << static_cast<uns
 inline constexpr std::array section_forms = std::to_array<SectionForm>({
     {Tag::text, "text", ScalarOfSection::uint8, 1, in_texts, false, "UTF-8 of a JSON object", ""},
     {Tag::triangles, "triangles", ScalarOfSection::uint32, 3, in_scene, true, "vertices", ""},
+    {Tag::edges, "edges", ScalarOfSection::uint32, 2, in_scene, true,
+     "vertices of an edge of no triangle, such as a part of a rod", "with such edges"},
+    {Tag::points, "points", ScalarOfSection::uint32, 1, in_scene, true,
+     "vertex of a point of no triangle, such as a particle", "with such points"},
     {Tag::positions, "positions", ScalarOfSection::float32, 3, in_frame, true,
      "`center` of the scene subtracted", "that moved since the last frame that was sent"},
     {Tag::object_pairs, "object_pairs", ScalarOfSection::uint32, 2, in_frame, false, "objects a < b", ""},

@@ -95,7 +95,10 @@ export type EventData = Record<EventKind, { begin: Uint32Array; end: Uint32Array
 export interface SceneMessage {
   kind: "scene";
   text: SceneText;
+  /** Per object the vertices of triangles, and of edges and points of no triangle. */
   triangles: Map<number, Uint32Array>;
+  edges: Map<number, Uint32Array>;
+  points: Map<number, Uint32Array>;
 }
 
 type FormOfFrame = Extract<(typeof FORMS)[keyof typeof FORMS], { kinds: readonly ["frame"] }>;
@@ -147,11 +150,16 @@ export interface SceneCounts {
   kinds: Kinds;
 }
 
-export function countsOf(scene: SceneText): SceneCounts {
+/** The elements of an object that the session numbers: triangles, then edges and points of no triangle. */
+const elementsOf = ({ edges, points }: SceneMessage, object: number, triangles: number): number =>
+  triangles + (edges.get(object)?.length ?? 0) / 2 + (points.get(object)?.length ?? 0);
+
+export function countsOf(message: SceneMessage): SceneCounts {
+  const scene = message.text;
   return {
     generation: scene.generation,
     vertices: scene.objects.map((object) => object.vertices),
-    triangles: scene.objects.map((object) => object.triangles),
+    triangles: scene.objects.map((object, i) => elementsOf(message, i, object.triangles)),
     statistics: scene.statistics.length,
     series: scene.series.length,
     kinds: scene.kinds,
@@ -296,10 +304,16 @@ function readScene(sections: Sections): SceneMessage {
     for (let i = 0; i < corners.length; ++i)
       if (corners[i]! >= of.vertices) fail(`triangle ${Math.floor(i / 3)} of ${of.name} has a vertex that does not exist`);
   }
+  const edges = sections.each<Uint32Array>("edges");
+  const points = sections.each<Uint32Array>("points");
+  for (const [object, vertices] of [...edges, ...points]) {
+    const limit = text.objects[object]?.vertices ?? 0;
+    if (vertices.some((vertex) => vertex >= limit)) fail("it has an edge or a point with a vertex that does not exist");
+  }
   text.objects.forEach((object, i) => {
     if (object.triangles > 0 && !triangles.has(i)) fail(`it has no triangles of ${object.name}`);
   });
-  return { kind: "scene", text, triangles };
+  return { kind: "scene", text, triangles, edges, points };
 }
 
 function frameText(json: Record<string, unknown>): FrameText {

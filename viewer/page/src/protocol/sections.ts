@@ -14,6 +14,8 @@ export const KINDS = ["", "scene", "frame", "answer", "failure", "series"] as co
 export const FORMS = {
   1: { name: "text", array: Uint8Array, width: 1, kinds: ["scene", "frame", "answer", "failure"], perObject: false },
   16: { name: "triangles", array: Uint32Array, width: 3, kinds: ["scene"], perObject: true },
+  17: { name: "edges", array: Uint32Array, width: 2, kinds: ["scene"], perObject: true },
+  18: { name: "points", array: Uint32Array, width: 1, kinds: ["scene"], perObject: true },
   32: { name: "positions", array: Float32Array, width: 3, kinds: ["frame"], perObject: true },
   33: { name: "object_pairs", array: Uint32Array, width: 2, kinds: ["frame"], perObject: false },
   34: { name: "contacts", array: Uint32Array, width: 8, kinds: ["frame"], perObject: false },

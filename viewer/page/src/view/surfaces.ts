@@ -34,6 +34,7 @@ const VERTEX_SHADER = `
     seen = at.xyz;
     place = position;
     smoothed = mat3(modelViewMatrix) * bent.xyz;
+    gl_PointSize = 7.0;
     gl_Position = look.a >= drawn.x && look.a < drawn.y ? projectionMatrix * at : vec4(2.0, 2.0, 2.0, 1.0);
   }`;
 
@@ -75,6 +76,10 @@ const SHADOW_SHADER = `
 const WIREFRAME_SHADER = `${CUT}
   uniform vec4 ink; flat in vec4 look; out vec4 result;
   void main() { cut(); result = linearToOutputTexel(ink.a > 0.0 ? ink : vec4(look.rgb, 1.0)); }`;
+
+const LOOSE_SHADER = `${CUT}
+  flat in vec4 look; out vec4 result;
+  void main() { cut(); result = linearToOutputTexel(vec4(look.rgb, 1.0)); }`;
 
 /** The colour of the wireframe over surfaces. Without surfaces it has the colours of the objects. */
 const WIREFRAME_COLOUR = new THREE.Color("#101418");
@@ -123,6 +128,23 @@ function cornersOf(objects: ObjectState[]): Uint32Array {
   return all;
 }
 
+/** The vertex ids of edges or points of no triangle, in the numbering of all objects together. */
+function looseOf(objects: ObjectState[], kind: "edges" | "points"): Uint32Array {
+  let first = 0;
+  const all = objects.map((object) => {
+    const ids = object[kind].map((vertex) => first + vertex);
+    first += object.vertices;
+    return ids;
+  });
+  const list = new Uint32Array(all.reduce((sum, ids) => sum + ids.length, 0));
+  let at = 0;
+  for (const ids of all) {
+    list.set(ids, at);
+    at += ids.length;
+  }
+  return list;
+}
+
 /** Both ends of the edges of all triangles. */
 function edgesOf(corners: Uint32Array): Uint32Array {
   const ends = new Uint32Array(2 * corners.length);
@@ -160,6 +182,7 @@ export class Surfaces {
   /** Objects whose normals are not those of their positions. */
   private readonly stale = new Set<number>();
   private isNew = true;
+  private hasLoose = false;
   private readonly uniforms = {
     looks: { value: makeLooks(0) }, selected: { value: -1 }, ink: { value: new THREE.Vector4() }, up: { value: new THREE.Vector3(0, 1, 0) }, slice: shared.slice,
   };
@@ -167,6 +190,9 @@ export class Surfaces {
   private readonly transparent = new THREE.Mesh(new THREE.BufferGeometry(), this.material(TRANSPARENT, SURFACE_SHADER));
   private readonly caster = new THREE.Mesh(new THREE.BufferGeometry(), this.material(CASTERS, SHADOW_SHADER));
   private readonly solid = new THREE.Mesh(new THREE.BufferGeometry(), this.material(OPAQUE, COUNT_SHADER));
+  /** Edges and points of no triangle. */
+  private readonly rods = new THREE.LineSegments(new THREE.BufferGeometry(), this.material(ALL, LOOSE_SHADER));
+  private readonly particles = new THREE.Points(new THREE.BufferGeometry(), this.material(ALL, LOOSE_SHADER));
   private readonly wireframe = new THREE.LineSegments(new THREE.BufferGeometry(), this.material(ALL, WIREFRAME_SHADER));
 
   constructor() {
@@ -176,7 +202,7 @@ export class Surfaces {
     for (const { material } of [this.transparent, this.wireframe]) material.transparent = true;
     this.transparent.material.depthWrite = false;
     this.transparent.material.forceSinglePass = false;  // back faces first: the inside is visible through the outside
-    this.group.add(this.opaque, this.transparent, this.wireframe);
+    this.group.add(this.opaque, this.transparent, this.wireframe, this.rods, this.particles);
     this.casters.add(this.caster);
     this.solids.add(this.solid);
     for (const shape of [...this.group.children, this.caster, this.solid]) shape.frustumCulled = false;  // bounds would need an update in each frame
@@ -194,7 +220,8 @@ export class Surfaces {
    * it.
    */
   build(objects: ObjectState[], positions: Float32Array): void {
-    for (const { geometry } of [this.opaque, this.wireframe]) geometry.dispose();
+    const shapes = [this.opaque, this.rods, this.particles, this.wireframe];
+    for (const { geometry } of shapes) geometry.dispose();
     this.uniforms.looks.value.dispose();
     this.objects = objects;
     this.uniforms.looks.value = makeLooks(objects.length);
@@ -208,10 +235,13 @@ export class Surfaces {
     let first = 0;
     for (const { index, vertices } of objects) numbers.fill(index, first, (first += vertices));
     const number = sentOnce(numbers);
-    for (const shape of [this.opaque, this.wireframe]) {
+    for (const shape of shapes) {
       shape.geometry = new THREE.BufferGeometry().setAttribute("position", attribute).setAttribute("object", number).setAttribute("bent", normals);
       shape.geometry.boundingSphere = new THREE.Sphere();  // three.js sorts by it and would otherwise visit all vertices
     }
+    this.rods.geometry.setIndex(sentOnce(looseOf(objects, "edges")));
+    this.particles.geometry.setIndex(sentOnce(looseOf(objects, "points")));
+    this.hasLoose = objects.some(({ edges, points }) => edges.length + points.length > 0);
     this.transparent.geometry = this.caster.geometry = this.solid.geometry = this.opaque.geometry.setIndex(sentOnce(cornersOf(objects)));
   }
 
@@ -284,6 +314,7 @@ export class Surfaces {
     looks.needsUpdate = true;
     this.opaque.visible = layers.surface && opaque;
     this.transparent.visible = layers.surface && transparent;
+    this.rods.visible = this.particles.visible = this.hasLoose && (layers.surface || layers.wireframe);
     this.caster.visible = layers.surface && (opaque || transparent);
     this.wireframe.visible = layers.wireframe && (opaque || transparent);
     if (this.wireframe.visible && !this.wireframe.geometry.index) this.wireframe.geometry.setIndex(sentOnce(edgesOf(cornersOf(this.objects))));

@@ -1,0 +1,67 @@
+// Meshes that are unusual: numbers that are not finite, no faces, rods and particles.
+import assert from "node:assert/strict";
+import { counts, picture, runProgram, settled, until } from "./harness.mjs";
+
+const MESH = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n";
+/** A rod of two edges and a particle, 0.01 above the mesh. */
+const RODS = "v 0.2 0.2 0.01\nv 0.5 0.2 0.01\nv 0.8 0.3 0.01\nv 0.4 0.6 0.01\nl 1 2 3\np 4\n";
+
+async function saysWhatTouchesNothing(stage) {
+  const files = [stage.file("nan.obj", MESH.replace("v 1 1 0", "v nan 1 0")), stage.file("far.obj", MESH.replace("v 1 1 0", "v 1 inf 0")), stage.file("points.obj", "v 0 0 0\nv 1 0 0\n")];
+  const { page, program } = await stage.view(...files);
+  const log = page.getByRole("log");
+  for (const text of ["nan and 1 other object: 2 vertices are NaN or infinite", "points: there are no faces, edges or points"]) {
+    await log.getByText(text).waitFor();
+    assert.ok(program.output.includes(`supple: warning: ${text}`), program.output);
+  }
+  await settled(page);
+  await page.getByRole("button", { name: "Dismiss" }).first().click();
+  await log.getByText("NaN or infinite").waitFor({ state: "hidden" });
+}
+
+/** Rods and particles are drawn, move, and their contacts are shown. */
+async function rodsAndParticles(stage) {
+  stage.file("mesh.obj", MESH);
+  stage.file("rods.obj", RODS);
+  const scene = stage.file("rods.toml", `[scene]\ncontacts = "proximity,continuous"\n[[object]]\nfile = "mesh.obj"\nmargin = 0.02\n[[object]]\nname = "rods"\nfile = "rods.obj"\nmargin = 0.02\nmotion = { kind = "sway", amplitude = 0.004, wavelength = 1, period = 1 }\n`);
+  const { page } = await stage.view(scene);
+  await until(page, () => supple.model.frame.text.step > 5 && supple.model.frame.proximityPairs.length > 0);
+  await page.evaluate(() => supple.client.ask({ do: "pause" }));
+  await settled(page);
+  const { edges, points } = await page.evaluate(() => ({ edges: [...supple.model.objects[1].edges], points: [...supple.model.objects[1].points] }));
+  assert.deepEqual({ edges, points }, { edges: [0, 1, 1, 2], points: [3] });
+  // Without marks, hiding the object changes the picture.
+  for (const name of ["Proximity pairs", "Contact points"]) {
+    const box = page.getByRole("checkbox", { name, exact: true });
+    if (await box.count()) await box.setChecked(false);
+  }
+  await settled(page);
+  const shown = await picture(page);
+  await page.getByRole("checkbox", { name: "Show rods" }).uncheck();
+  await settled(page);
+  assert.notEqual(await picture(page), shown, "rods and particles are not drawn");
+  await page.getByRole("checkbox", { name: "Show rods" }).check();
+  // Candidates of rods have numbers after those of triangles.
+  await page.getByRole("checkbox", { name: "Candidate pairs" }).check();
+  await until(page, () => supple.model.frame.candidates.length > 0);
+  await settled(page);
+  assert.ok((await counts(page)).candidates > 0);
+  assert.equal(await page.evaluate(() => supple.status.state), "connected");
+}
+
+async function rodsInAPage(stage) {
+  const rods = stage.file("rods.obj", RODS);
+  const file = stage.file("page.html");
+  await runProgram(stage.supple, ["view", rods, "--export", file]);
+  const page = await stage.page();
+  await page.goto(`file://${file}`);
+  await until(page, () => window.supple?.model.frame);
+  assert.deepEqual(await page.evaluate(() => [...supple.model.objects[0].points]), [3]);
+  assert.ok(await page.getByRole("toolbar", { name: "Player" }).isHidden(), "nothing moves");
+}
+
+export const tests = [
+  ["numbers that are not finite and meshes without faces are said", saysWhatTouchesNothing],
+  ["rods and particles are drawn", rodsAndParticles],
+  ["rods in an exported page", rodsInAPage],
+];
