@@ -61,7 +61,7 @@ async function theFirstLineSaysWhatTouches(stage) {
   await touchLine(near.page).getByText("near: 1 pair (1 began)", { exact: true }).waitFor();
 
   const apart = await stage.view(stage.file("apart.toml", `${ball("a", 0)}${ball("b", 5)}`));
-  await touchLine(apart.page).getByText("nothing touches: all objects are apart", { exact: true }).waitFor();
+  await touchLine(apart.page).getByText("nothing touches: all are apart", { exact: true }).waitFor();
 
   // The boxes of the balls overlap, the balls do not.
   const diagonal = `[[object]]\nmodel = "icosphere"\nfrequency = 6\n[[object]]\nmodel = "icosphere"\nfrequency = 6\ntranslate = [1.3, 1.3, 1.3]\n`;

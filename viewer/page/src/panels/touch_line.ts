@@ -38,6 +38,6 @@ export class TouchLine {
     if (contacts === "none") return "nothing is tested: contacts are switched off";
     const tested = contacts.split(",").filter((kind) => !untested.some((entry) => entry.kind === kind));
     if (tested.length === 0) return `nothing was tested: ${[...new Set(untested.map(({ reason }) => reason.replace(/_/g, " ")))].join(", ")}`;
-    return objectPairs.length > 0 ? `nothing touches: ${pairs(objectPairs.length / 2)} tested` : "nothing touches: all objects are apart";
+    return objectPairs.length > 0 ? `nothing touches: ${pairs(objectPairs.length / 2)} tested` : "nothing touches: all are apart";
   }
 }
