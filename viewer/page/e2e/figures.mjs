@@ -85,7 +85,7 @@ async function wholePage(stage) {
   await until(page, () => supple.model.history.frames.length > 60);
   await stopWhen(page, () => supple.model.frame.contacts.length > 3000);
   await page.keyboard.press("f");
-  await page.getByRole("grid", { name: "Contacts" }).getByText("rabbit 3").first().click();  // opens the pair
+  await page.getByRole("treegrid", { name: "Contacts" }).getByText("rabbit 3").first().click();  // opens the pair
   await page.keyboard.press("f");
   await page.evaluate(() => supple.model.clearSelection());
   await settled(page);

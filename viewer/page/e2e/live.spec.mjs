@@ -18,7 +18,7 @@ async function movesPausesAndSteps(stage) {
   await page.waitForTimeout(400);
   await settled(page);
   assert.equal(await step(page), paused);
-  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await page.getByRole("button", { name: "+1 step" }).click();
   await until(page, (wanted) => supple.model.frame.text.step === wanted, paused + 1);
   await page.getByRole("button", { name: "Play" }).click();
   await until(page, (paused) => supple.model.frame.text.step > paused + 3, paused);
@@ -78,7 +78,7 @@ async function proximityAndDepthsShow(stage) {
   }));
   assert.equal(drawn.proximity, pairs);
   assert.equal(drawn.depths, depths);
-  const rows = await page.getByRole("grid", { name: "Contacts" }).getByRole("row").allTextContents();
+  const rows = await page.getByRole("treegrid", { name: "Contacts" }).getByRole("row").allTextContents();
   assert.equal(rows.length, 2);
   for (const [label, count] of [["Proximity pairs", "proximity"], ["Depths", "depths"]]) {
     const before = await picture(page);
@@ -250,7 +250,7 @@ async function contactTableFlies(stage) {
   await page.emulateMedia({ reducedMotion: "no-preference" });  // the camera flies
   await until(page, () => supple.model.frame.contacts.length > 400);
   await pause(page);
-  const grid = page.getByRole("grid", { name: "Contacts" });
+  const grid = page.getByRole("treegrid", { name: "Contacts" });
   const first = await page.evaluate(() => {
     const [a, , b] = supple.model.frame.contacts;
     const { contacts, contactPoints, text } = supple.model.frame;
@@ -537,7 +537,7 @@ async function continuousContactsAreListed(stage) {
   assert.equal((await counts(page)).points, impacts);
   assert.equal((await counts(page)).normals, impacts);
   await page.getByRole("tab", { name: "Contacts" }).click();
-  const grid = page.getByRole("grid", { name: "Contacts" });
+  const grid = page.getByRole("treegrid", { name: "Contacts" });
   await grid.getByText(/^hit at/).first().waitFor();
   await grid.locator('[aria-rowindex="1"]').click();
   await grid.locator('[aria-rowindex="2"]').click();

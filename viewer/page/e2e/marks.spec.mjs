@@ -46,7 +46,7 @@ async function denseMarksThinOut(stage) {
   await page.getByRole("list", { name: "Layers" }).getByText(gaps.toLocaleString("en")).waitFor();
   const far = await drawn();
   assert.ok(far > 10 && far < gaps / 4, `${far} of ${gaps} marks are drawn`);
-  await page.getByRole("grid", { name: "Contacts" }).getByText("ball").click();
+  await page.getByRole("treegrid", { name: "Contacts" }).getByText("ball").click();
   for (let i = 0; i < 5; ++i) await page.keyboard.press("+");
   await settled(page);
   const near = await drawn();

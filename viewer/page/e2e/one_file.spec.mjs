@@ -22,7 +22,7 @@ async function movesAndCollides(stage) {
   await until(page, () => supple.model.frame.text.step > 10 && supple.model.frame.contacts.length > 0);
   await pause(page);
   const paused = await step(page);
-  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await page.getByRole("button", { name: "+1 step" }).click();
   await until(page, (wanted) => supple.model.frame.text.step === wanted, paused + 1);
   await page.getByRole("checkbox", { name: "Object octrees" }).check();
   await until(page, () => supple.counts().boxes > 0);

@@ -39,11 +39,11 @@ async function stepsAndPlays(stage) {
   await page.getByRole("button", { name: "First frame" }).click();
   await settled(page);
   await isAt(page, 0);
-  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await page.getByRole("button", { name: "+1 step" }).click();
   await isAt(page, 1);
-  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await page.getByRole("button", { name: "+1 step" }).click();
   await isAt(page, 2);
-  await page.getByRole("button", { name: "Step back" }).click();
+  await page.getByRole("button", { name: "−1 step" }).click();
   await isAt(page, 1);
   await page.getByRole("button", { name: "Last frame" }).click();
   await isAt(page, last);

@@ -178,7 +178,7 @@ export class App {
     const buttons = names.map((name) =>
       h("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `page-${name}`, onclick: () => this.openTab(name) }, name),
     );
-    const panels = names.map((name) => h("div", { role: "tabpanel", id: `page-${name}`, "aria-labelledby": `tab-${name}`, class: "page" }, pages[name]!));
+    const panels = names.map((name) => h("div", { role: "tabpanel", tabindex: 0, id: `page-${name}`, "aria-labelledby": `tab-${name}`, class: "page" }, pages[name]!));
     this.openTab = (wanted) => {
       this.tab = wanted;
       names.forEach((name, i) => {

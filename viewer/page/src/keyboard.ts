@@ -25,7 +25,7 @@ function takesKeys(target: EventTarget | null, key: string): boolean {
     return target.type !== "range" || key.startsWith("Arrow") || ["Home", "End", "PageUp", "PageDown"].includes(key);
   }
   if (target instanceof HTMLButtonElement || target.tagName === "SUMMARY") return key === "Enter";
-  return target.getAttribute("role") === "grid" && (key.startsWith("Arrow") || key === "Home" || key === "End");
+  return (target.getAttribute("role") ?? "").endsWith("grid") && (key.startsWith("Arrow") || key === "Home" || key === "End");
 }
 
 function onArrow(app: App, event: KeyboardEvent): boolean {

@@ -26,7 +26,7 @@ export class ContactTable {
 
   constructor(private readonly model: Model, private readonly flyTo: (point: number[], reach: number) => void) {
     this.window = new RowWindow(
-      { class: "table-view", role: "grid", "aria-label": "Contacts", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
+      { class: "table-view", role: "treegrid", "aria-label": "Contacts", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
       h("div", { class: "rows" }), ROW_HEIGHT, () => makeRow(4, (index) => this.press(index), (row, cells, index) => this.showRow(row, cells, index)),
     );
     const heads: [string, string][] = [

@@ -17,7 +17,7 @@ export class NodePairs {
   readonly element: HTMLElement;
   private readonly pairs = h("select", { "aria-label": "Object pair", onchange: () => void this.read() });
   private readonly levels = h("div", { class: "levels", role: "group", "aria-label": "Levels" });
-  private readonly names = h("code", { "aria-label": "Node pairs" });
+  private readonly names = h("code", { role: "group", "aria-label": "Node pairs" });
   private answer: Level[] = [];
   private due: ReturnType<typeof setTimeout> | undefined;
 

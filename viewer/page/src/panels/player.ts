@@ -33,8 +33,8 @@ export class Player {
     const last = iconButton("forward", "Last frame", "End", () => this.seek(Infinity));
     const previous = iconButton("previousEvent", "Previous event", ",", () => this.jump(-1));
     const next = iconButton("nextEvent", "Next event", ".", () => this.jump(1));
-    const back = h("button", { type: "button", class: "text-button", "aria-label": "Step back", title: "Step back (←)", onclick: () => this.step(-1) }, "−1");
-    const forward = h("button", { type: "button", class: "text-button", "aria-label": "Step", title: "Step (→)", onclick: () => this.step(1) }, "+1");
+    const back = h("button", { type: "button", class: "text-button", "aria-label": "−1 step", title: "Step back (←)", onclick: () => this.step(-1) }, "−1");
+    const forward = h("button", { type: "button", class: "text-button", "aria-label": "+1 step", title: "Step (→)", onclick: () => this.step(1) }, "+1");
     const track = h("div", { class: "track" }, this.marks, this.slider);
     const seed = h("label", { class: "seed" }, "Seed ", this.seed);
     this.kinds.append(...EVENT_KINDS.map((kind) => h("option", { value: kind }, EVENT_LABELS[kind])));
