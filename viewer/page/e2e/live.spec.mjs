@@ -262,7 +262,7 @@ async function contactTableFlies(stage) {
   assert.deepEqual((await row(1).getByRole("gridcell").allTextContents()).slice(0, 3), [`▸ ${first.names[0]}`, first.names[1], first.count.toLocaleString("en")]);
   const before = await camera(page);
   await row(1).click();  // flies to the pair and opens it
-  await until(page, (rows) => Number(document.querySelector('[aria-label="Contacts"][role=grid]').getAttribute("aria-rowcount")) === rows, total + first.count);
+  await until(page, (rows) => Number(document.querySelector('[aria-label="Contacts"][role=treegrid]').getAttribute("aria-rowcount")) === rows, total + first.count);
   await settled(page);
   assert.notDeepEqual((await camera(page)).target, before.target);
   assert.ok((await grid.getByRole("row").count()) < 100, "rows out of sight have elements");
@@ -274,7 +274,7 @@ async function contactTableFlies(stage) {
   assert.deepEqual(await key(), await inFrame(2));
   await row(4).and(grid.locator('[aria-selected="true"]')).waitFor();
   await page.keyboard.press("ArrowLeft");  // closes the pair
-  await until(page, (rows) => Number(document.querySelector('[aria-label="Contacts"][role=grid]').getAttribute("aria-rowcount")) === rows, total);
+  await until(page, (rows) => Number(document.querySelector('[aria-label="Contacts"][role=treegrid]').getAttribute("aria-rowcount")) === rows, total);
   await row(1).and(grid.locator('[aria-selected="true"]')).waitFor();
 
   await page.getByRole("searchbox", { name: "Filter contacts by name" }).fill(first.names[0]);
