@@ -25,7 +25,6 @@ try {
   await pause(page);
   await page.keyboard.press("r");
   await until(page, () => supple.model.frame?.text.step === 0);
-  await page.getByRole("checkbox", { name: "Contact segments", exact: true }).check();
   await page.keyboard.press("h");
   await page.keyboard.press("f");
   await settled(page);
