@@ -108,11 +108,12 @@ void warn_of_others(const ViewOptions& options) {
 }
 
 int serve(viewer::SceneView show, const ViewOptions& options) {
-  viewer::Server server(viewer::Session(std::move(show), options.budget),
-                        {.address = options.address,
-                         .port = options.port,
-                         .page = viewer::embedded_page(),
-                         .token = options.token_file.empty() ? "" : viewer::token_of_file(options.token_file)});
+  viewer::Server server(
+      viewer::Session(std::move(show), options.budget),
+      {.address = options.address,
+       .port = options.port,
+       .page = viewer::embedded_page(),
+       .token = options.token_file.empty() ? "" : viewer::token_of_file(options.token_file)});
   warn_of_others(options);
   const Interruption interruption;
   fmt::print("Open {}\n", server.url());

@@ -109,10 +109,9 @@ inline constexpr const char* view_footer = R"(Examples:
       One file to send. It opens in any browser, without supple and without a server.
 
 The address contains a new token in each run, so that nobody else can open the page; --token-file keeps the
-token. The program opens a
-temporary file in the browser, which leads to the address. Only you can read that file. A browser from a
-Snap or a Flatpak may not see it: open the printed address instead. Ctrl-C ends the program, and the page
-says that it has ended.)";
+token. The program opens a temporary file in the browser, which leads to the address. Only you can read that
+file. A browser from a Snap or a Flatpak may not see it: open the printed address instead. Ctrl-C ends the
+program, and the page says that it has ended.)";
 
 inline constexpr const char* info_footer = R"(Examples:
   supple info rabbit.obj

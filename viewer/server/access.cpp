@@ -101,7 +101,8 @@ std::string token_of_file(const std::string& path) {
   if (!is_private) fail_of_file(path, "other users can read it; chmod 600 it, or remove it for a new token");
   std::string_view text(content.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
   if (text.ends_with('\n')) text.remove_suffix(1);
-  if (!is_token(text)) fail_of_file(path, "it has no token of 32 hexadecimal digits; remove it for a new one");
+  if (!is_token(text))
+    fail_of_file(path, "it has no token of 32 hexadecimal digits; remove it for a new one");
   return std::string(text);
 }
 

@@ -1,7 +1,6 @@
 #include "session.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <limits>
 #include <optional>
 #include <span>
@@ -14,11 +13,11 @@
 #include "layers.hpp"
 #include "messages/answers.hpp"
 #include "messages/frame_message.hpp"
-#include "messages/json_text.hpp"
 #include "messages/json_value.hpp"
 #include "messages/message.hpp"
 #include "messages/scene_message.hpp"
 #include "object_arguments.hpp"
+#include "replies.hpp"
 #include "settings.hpp"
 #include "sources/player.hpp"
 #include "sources/stage.hpp"
@@ -27,7 +26,6 @@ namespace supple::viewer {
 namespace {
 
 constexpr std::int64_t most_credit = 8;
-constexpr std::size_t most_replies = 256;
 constexpr double largest = std::numeric_limits<double>::max();
 constexpr std::int64_t largest_count = std::numeric_limits<std::int64_t>::max();
 
@@ -49,10 +47,6 @@ class Session::Implementation {
   bool ended() const { return has_ended_; }
 
  private:
-  struct Reply {
-    MessageKind kind;
-    std::string text;
-  };
   using Handler = void (Implementation::*)(Arguments&);
   struct Command {
     const char* name;
@@ -90,7 +84,6 @@ class Session::Implementation {
   bool is_of_simulation(Arguments& arguments) const;
 
   void fail(const std::string& message, bool fatal = false, std::span<const std::string> layers = {});
-  void begin_reply();
   bool pack_frame(MessageWriter& message);
 
   SceneView show_;
@@ -106,10 +99,8 @@ class Session::Implementation {
   bool owes_scene_ = false, owes_series_ = false, has_news_ = false;
   bool has_sent_frame_ = false;  // of this scene message
   std::int64_t credit_ = 0;
-  std::deque<Reply> replies_;
-  std::optional<double> id_;  // of the current command
+  Replies replies_;
   FramePacker packer_;
-  JsonText json_;
 };
 
 const Session::Implementation::Command Session::Implementation::commands_[] = {
@@ -146,14 +137,13 @@ void Session::Implementation::greet() {
 double Session::Implementation::advance(double seconds) {
   if (!is_greeted_ || has_ended_) return Player::idle_seconds;
   Player::Outcome outcome;
-  const std::uint64_t step = stage_->source().step();
   auto failure = failure_of([&] {
     outcome = player_.advance(*stage_, seconds);
-    if (stage_->simulation() != nullptr && stage_->source().step() != step) packer_.add_step(stage_->source());
+    if (outcome.changed && stage_->simulation() != nullptr) packer_.add_step(stage_->source());
   });
   if (outcome.failure) failure = Failure{*outcome.failure};
   if (failure) {
-    id_.reset();
+    replies_.id.reset();
     player_.pause();
     has_news_ = true;
     if (SimulationSource* const simulation = stage_->simulation(); simulation && !failure->out_of_memory)
@@ -175,14 +165,12 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
     player_.set_watched(false);
     packer_.forget_positions();
     ++numbers_.generation;
-    pack_scene(*stage_, numbers_, json_, message);
+    pack_scene(*stage_, numbers_, replies_.json, message);
   } else if (owes_series_) {
     owes_series_ = false;
     pack_series(*scene().frames, message);
   } else if (!replies_.empty()) {
-    message.begin(replies_.front().kind);
-    message.add_text(replies_.front().text);
-    replies_.pop_front();
+    replies_.take_first(message);
   } else if (has_news_ && credit_ > 0 && !has_ended_) {
     has_news_ = false;
     if (!pack_frame(message)) return next_message(message);
@@ -196,11 +184,12 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
 
 /// Returns false on failure, and then drops the optional layers.
 bool Session::Implementation::pack_frame(MessageWriter& message) {
-  const FrameView frame{scene(),     stage_->source(),  layers_,         stage_->center(),
-                        numbers_.generation, player_.playing(), player_.speed(), player_.loop()};
+  const FrameView frame{scene(),          stage_->source(),    layers_,
+                        stage_->center(), numbers_.generation, player_.playing(),
+                        player_.speed(),  player_.loop()};
   const auto failure = failure_of([&] { packer_.pack(frame, message); });
   if (!failure) return true;
-  id_.reset();
+  replies_.id.reset();
   packer_.forget();
   const std::vector<std::string> dropped = layer_names(layers_);
   layers_ = {};
@@ -213,11 +202,10 @@ bool Session::Implementation::pack_frame(MessageWriter& message) {
 
 void Session::Implementation::command(std::string_view json) {
   if (has_ended_) return;
-  id_.reset();
-  if (replies_.size() >= most_replies) {
-    // Limit the replies that wait for a page that does not read them.
-    replies_.pop_back();
-    fail("more than " + std::to_string(most_replies) + " answers are waiting; some commands were ignored");
+  replies_.id.reset();
+  if (replies_.full()) {
+    replies_.drop_last();
+    fail("more than " + std::to_string(Replies::most) + " answers are waiting; some commands were ignored");
     return;
   }
   std::size_t error = 0;
@@ -233,7 +221,7 @@ void Session::Implementation::command(std::string_view json) {
 void Session::Implementation::obey(const JsonValue& text) {
   if (const JsonValue* const id = text.find("id")) {
     if (!id->is_number()) return fail("id must be a number");
-    id_ = id->number;
+    replies_.id = id->number;
   }
   const JsonValue* const name = text.find("do");
   if (name == nullptr || name->kind != JsonValue::Kind::text)
@@ -250,22 +238,21 @@ void Session::Implementation::obey(const JsonValue& text) {
 /// Goes to the last requested frame, so that answers refer to it.
 void Session::Implementation::catch_up() {
   if (!stage_->recording()) return;
-  const auto id = id_;
+  const auto id = replies_.id;
   advance(0);
-  id_ = id;
+  replies_.id = id;
 }
 
 void Session::Implementation::run(const Command& command, const JsonValue& text) {
   Arguments arguments(text, command.name);
-  if (command.has_answer && !id_)
+  if (command.has_answer && !replies_.id)
     return fail(std::string(command.name) + " has an answer, so it needs an \"id\" that is a number");
   if (command.has_answer) catch_up();
-  begin_reply();
+  replies_.begin();
   const auto failure = failure_of([&] { (this->*command.handle)(arguments); });
   if (failure) arguments.fail(failure->message);
   if (!arguments.error().empty()) return fail(arguments.error());
-  json_.end_object();
-  if (id_) replies_.push_back({MessageKind::answer, std::string(json_.text())});
+  replies_.end_answer();
 }
 
 void Session::Implementation::credit(Arguments& arguments) {
@@ -337,10 +324,7 @@ void Session::Implementation::reset(Arguments& arguments) {
 void Session::Implementation::set(Arguments& arguments) {
   const Settings settings = read_settings(settings_, stage_->simulation() != nullptr, arguments);
   if (!arguments.check() || !fits_in_memory(show_, settings, most_memory_, arguments)) return;
-  if (settings.restart == settings_.restart)
-    change(settings);
-  else
-    restart(settings);
+  settings.restart == settings_.restart ? change(settings) : restart(settings);
 }
 
 /// Changes how contacts are found. The objects stay where they are: a simulation keeps its state, and a
@@ -393,12 +377,12 @@ void Session::Implementation::release(Arguments& arguments) {
 void Session::Implementation::explain(Arguments& arguments) {
   const ObjectTriangle a = read_object_triangle("a", scene(), arguments),
                        b = read_object_triangle("b", scene(), arguments);
-  if (arguments.check()) answer_explain(scene(), stage_->source(), stage_->center(), a, b, json_);
+  if (arguments.check()) answer_explain(scene(), stage_->source(), stage_->center(), a, b, replies_.json);
 }
 
 void Session::Implementation::measure(Arguments& arguments) {
   const std::uint32_t a = read_object("a", scene(), arguments), b = read_object("b", scene(), arguments);
-  if (arguments.check()) answer_measure(scene(), stage_->source(), stage_->center(), a, b, json_);
+  if (arguments.check()) answer_measure(scene(), stage_->source(), stage_->center(), a, b, replies_.json);
 }
 
 void Session::Implementation::read(Arguments& arguments) {
@@ -408,16 +392,16 @@ void Session::Implementation::read(Arguments& arguments) {
   if (vertex && triangle) arguments.fail("give a vertex or a triangle, not both");
   if (!arguments.check()) return;
   if (vertex)
-    answer_read_vertex(stage_->source(), object, *vertex, json_);
+    answer_read_vertex(stage_->source(), object, *vertex, replies_.json);
   else if (triangle)
-    answer_read_triangle(scene(), stage_->source(), object, *triangle, json_);
+    answer_read_triangle(scene(), stage_->source(), object, *triangle, replies_.json);
   else
-    answer_read_object(scene(), stage_->source(), object, json_);
+    answer_read_object(scene(), stage_->source(), object, replies_.json);
 }
 
 void Session::Implementation::node_pairs(Arguments& arguments) {
   const std::uint32_t a = read_object("a", scene(), arguments), b = read_object("b", scene(), arguments);
-  if (arguments.check()) answer_node_pairs(stage_->source(), a, b, json_);
+  if (arguments.check()) answer_node_pairs(stage_->source(), a, b, replies_.json);
 }
 
 bool Session::Implementation::is_of_recording(Arguments& arguments) const {
@@ -432,22 +416,11 @@ bool Session::Implementation::is_of_simulation(Arguments& arguments) const {
 
 // Replies.
 
-void Session::Implementation::begin_reply() {
-  json_.clear();
-  json_.begin_object();
-  if (id_) json_.member("id", *id_);
-}
-
 /// `layers` are the layers that frames no longer contain.
 void Session::Implementation::fail(const std::string& message, bool fatal,
                                    std::span<const std::string> layers) {
   has_ended_ = fatal;
-  begin_reply();
-  json_.member("message", message);
-  json_.member("fatal", fatal);
-  if (!layers.empty()) json_.member("layers", layers);
-  json_.end_object();
-  replies_.push_back({MessageKind::failure, std::string(json_.text())});
+  replies_.add_failure(message, fatal, layers);
 }
 
 Session::Session(SceneView show, MemoryBudget budget)

@@ -122,13 +122,14 @@ double estimated_memory(const SceneView& show, const Settings& settings) {
   // In bytes. Small leaves have as many nodes as triangles.
   constexpr double of_object = 20'000, of_vertex = 400, of_triangle = 400, of_leaf = 4'000;
   double bytes = 0;
-  visit_repeated(show, settings.restart.objects.value_or(show.objects.size()), [&](const ViewedObject& object) {
-    ObjectOctreeOptions octree = object.options.octree;
-    settings.octree.apply_to(octree);
-    const auto vertices = static_cast<double>(object.mesh.positions.size());
-    const auto triangles = static_cast<double>(object.mesh.triangles.size());
-    bytes += of_object + of_vertex * vertices + (of_triangle + of_leaf / octree.leaf_size) * triangles;
-  });
+  visit_repeated(
+      show, settings.restart.objects.value_or(show.objects.size()), [&](const ViewedObject& object) {
+        ObjectOctreeOptions octree = object.options.octree;
+        settings.octree.apply_to(octree);
+        const auto vertices = static_cast<double>(object.mesh.positions.size());
+        const auto triangles = static_cast<double>(object.mesh.triangles.size());
+        bytes += of_object + of_vertex * vertices + (of_triangle + of_leaf / octree.leaf_size) * triangles;
+      });
   return bytes;
 }
 

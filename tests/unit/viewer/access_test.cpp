@@ -60,8 +60,10 @@ TEST_F(TokenFile, IsRefusedWhenOthersCanReadItOrItHasNoToken) {
   token_of_file(file_);
   std::filesystem::permissions(file_, std::filesystem::perms::group_read, std::filesystem::perm_options::add);
   EXPECT_NE(failure(file_).find("other users can read it"), std::string::npos);
-  std::filesystem::permissions(file_, std::filesystem::perms::group_read, std::filesystem::perm_options::remove);
-  for (const char* const text : {"", "secret", "0123456789abcdef0123456789abcdef0", "0123456789abcdef0123456789ABCDEF"}) {
+  std::filesystem::permissions(file_, std::filesystem::perms::group_read,
+                               std::filesystem::perm_options::remove);
+  for (const char* const text :
+       {"", "secret", "0123456789abcdef0123456789abcdef0", "0123456789abcdef0123456789ABCDEF"}) {
     std::ofstream(file_) << text;
     EXPECT_NE(failure(file_).find("no token"), std::string::npos) << text;
   }

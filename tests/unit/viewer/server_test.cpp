@@ -315,6 +315,7 @@ TEST_F(ViewerServer, ASlowPageGetsTheNewest) {
   client.send(R"({"do": "play"})");
   client.send(R"({"do": "credit", "frames": 1})");
   const int before = client.receive(Kind::frame).json["step"];
+  client.send(R"({"do": "credit", "frames": 0})");  // the page has drawn it
   // The page is busy with other messages. Each answer comes after a step, because the session executes
   // commands between two steps.
   constexpr int steps = 20;
@@ -353,6 +354,9 @@ TEST_F(ViewerServer, TimeStandsStillWhileNobodyLooks) {
     PageClient client = connect();
     client.send(R"({"do": "speed", "factor": 0})");
     client.send(R"({"do": "play"})");
+    client.send(R"({"do": "credit", "frames": 1})");
+    client.receive(Kind::frame);
+    client.send(R"({"do": "credit", "frames": 0})");  // the page has drawn it
     ASSERT_TRUE(eventually([&] { return frames->reads > 20; }));
   }  // the connection ends without a close
   // Between two looks at the count, the server answers requests. They are no pages that look at the session.

@@ -182,11 +182,13 @@ TEST(ViewerFrames, StatisticsOfEveryStepArrive) {
   TestPage page(show);
   const Json names = page.scene().json["statistics"];
   const std::size_t columns = names.size();
-  const auto contacts = static_cast<std::size_t>(std::find(names.begin(), names.end(), "contacts") - names.begin());
+  const auto contacts =
+      static_cast<std::size_t>(std::find(names.begin(), names.end(), "contacts") - names.begin());
   std::vector<double> expected{static_cast<double>(simulation.scene().result().contacts.size())}, sent;
   const auto take = [&](const ViewerMessage& frame) {
     const std::vector<double> values = frame.values<double>(43);
-    for (std::size_t row = 0; row < values.size() / columns; ++row) sent.push_back(values[row * columns + contacts]);
+    for (std::size_t row = 0; row < values.size() / columns; ++row)
+      sent.push_back(values[row * columns + contacts]);
   };
   take(page.frame());
   for (const int count : {1, 7, 2, 60}) {
@@ -302,9 +304,11 @@ TEST(ViewerFrames, BorderIsSentWithoutTheCentre) {
 TEST(ViewerFrames, SayWhatWasNotTested) {
   SceneView show = touching_balls();
   TestPage tested(show);
+  tested.scene();
   EXPECT_EQ(tested.frame().json["untested"], Json::array());
   show.objects.resize(1);
   TestPage page(show);
+  page.scene();
   EXPECT_EQ(page.frame().json["untested"], (Json{{{"kind", "intersection"}, {"reason", "one_object"}}}));
 }
 

@@ -120,8 +120,8 @@ TEST(ViewerSettings, RefusesWhatIsOutOfRangeWithTheRange) {
     return Json();
   };
   const std::vector<std::pair<std::string, Json>> refused{
-      {"time_step", -1}, {"time_step", 0},       {"time_step", "x"}, {"max_level", 99},  {"leaf_size", -5},
-      {"leaf_size", 0.5}, {"objects", 100'001}, {"objects", 0},     {"tree_arity", 3},  {"max_time", 2}};
+      {"time_step", -1},  {"time_step", 0},     {"time_step", "x"}, {"max_level", 99}, {"leaf_size", -5},
+      {"leaf_size", 0.5}, {"objects", 100'001}, {"objects", 0},     {"tree_arity", 3}, {"max_time", 2}};
   for (const auto& [key, value] : refused) {
     const std::string failure = page.failure(Json{{"do", "set"}, {key, value}}.dump());
     EXPECT_NE(failure.find("it must be " + described(key)["range"].get<std::string>()), std::string::npos)

@@ -274,7 +274,7 @@ export class App {
     this.arrivals = this.arrivals.filter(({ at }) => at > now - 1000);
     const [first, last] = [this.arrivals[0], this.arrivals.at(-1)];
     const factor = first && last && last.at > first.at ? (1000 * (last.time - first.time)) / (last.at - first.at) : null;
-    this.player.showRate(this.player.playing ? this.arrivals.length : 0, factor);
+    this.player.showRate(this.player.playing && this.client.status.state === "connected" ? this.arrivals.length : 0, factor);
     this.scenePanel.showCounts(this.view.layers.counts(), this.view.isFlat);
   }
 

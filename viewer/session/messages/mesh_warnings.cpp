@@ -33,8 +33,8 @@ std::vector<std::string> warnings_of_meshes(const SceneView& show) {
   Found not_finite, empty;
   for (const ViewedObject& object : show.objects) {
     const auto& positions = object.mesh.positions;
-    const auto count = std::count_if(positions.begin(), positions.end(),
-                                     [](const Vec3d& p) { return !is_finite(p); });
+    const auto count =
+        std::count_if(positions.begin(), positions.end(), [](const Vec3d& p) { return !is_finite(p); });
     if (count > 0) not_finite.add(object, static_cast<std::uint64_t>(count));
     if (!has_elements(object)) empty.add(object);
   }

@@ -136,8 +136,7 @@ void add_settings(Stage& stage, JsonText& json) {
   add_descriptions<ObjectOctreeOptions>(json);
   if (stage.simulation() != nullptr) {
     for_each_restart_setting([&]<class Struct, class Value>(const Field<Struct, Value>& field, auto) {
-      if (!std::is_same_v<Value, Integrator> || has_bodies(stage.show()))
-        add_description(field, true, json);
+      if (!std::is_same_v<Value, Integrator> || has_bodies(stage.show())) add_description(field, true, json);
     });
   }
   json.end_array();
@@ -216,8 +215,8 @@ void add_warnings(Stage& stage, JsonText& json) {
   json.member("warnings", std::span<const std::string>(warnings));
 }
 
-/// Adds the edges or points of no triangle, in the order in which the scene numbers them; nothing when there are
-/// none.
+/// Adds the edges or points of no triangle, in the order in which the scene numbers them; nothing when there
+/// are none.
 template <class Element>
 void add_elements(Tag tag, std::size_t object, const std::vector<Element>& of_mesh,
                   const std::vector<Element>& of_options, MessageWriter& message) {
@@ -262,7 +261,8 @@ void pack_scene(Stage& stage, SceneNumbers numbers, JsonText& json, MessageWrite
     const auto sent = message.add<Triangle>(Tag::triangles, static_cast<std::uint32_t>(i), triangles.size());
     std::copy(triangles.begin(), triangles.end(), sent.begin());
     const ViewedObject& object = show.objects[i];
-    add_elements<std::array<std::uint32_t, 2>>(Tag::edges, i, object.mesh.edges, object.options.edges, message);
+    add_elements<std::array<std::uint32_t, 2>>(Tag::edges, i, object.mesh.edges, object.options.edges,
+                                               message);
     add_elements<std::uint32_t>(Tag::points, i, object.mesh.points, object.options.points, message);
   }
 }

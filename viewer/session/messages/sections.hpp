@@ -62,7 +62,8 @@ inline constexpr std::array section_forms = std::to_array<SectionForm>({
     {Tag::colliding_vertices, "colliding_vertices", ScalarOfSection::uint32, 1, in_frame, true,
      "vertices of the paper's output", "when requested"},
     {Tag::statistics, "statistics", ScalarOfSection::float64, 1, in_frame, false,
-     "in the order of the names in `statistics` of the scene: a row for each step since the last frame that was "
+     "in the order of the names in `statistics` of the scene: a row for each step since the last frame that "
+     "was "
      "sent",
      ""},
     {Tag::contact_begin, "contact_begin", ScalarOfSection::uint32, 2, in_frame, false,
