@@ -21,6 +21,7 @@
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
 #include "inputs/inputs.hpp"
+#include "server/access.hpp"
 #include "server/server.hpp"
 #include "session/messages/mesh_warnings.hpp"
 #include "session/packed/packed_scene.hpp"

@@ -15,7 +15,6 @@
 #include <cstring>
 #include <utility>
 
-#include "server/server.hpp"
 #include "supple/error.hpp"
 
 namespace supple::viewer {

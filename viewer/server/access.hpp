@@ -10,6 +10,11 @@ namespace supple::viewer {
 /// 128 bits from the random device of the system, as 32 hexadecimal digits.
 std::string make_token();
 
+/// The token in a file. Makes the file with a new token when it does not exist, so that the address of a
+/// server stays the same when it is started again. Throws `Error` when the file cannot be used, or when
+/// others can read it.
+std::string token_of_file(const std::string& path);
+
 /// The parts of the target of an HTTP request.
 struct Target {
   std::string_view path, token;  ///< token: empty when there is none

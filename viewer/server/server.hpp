@@ -23,11 +23,6 @@ struct ServerOptions {
 /// Whether only programs on this machine can reach the address. Throws `Error` for an invalid IP address.
 bool is_loopback(const std::string& address);
 
-/// The token in a file. Makes the file with a new token when it does not exist, so that the address of a
-/// server stays the same when it is started again. Throws `Error` when the file cannot be used, or when
-/// others can read it.
-std::string token_of_file(const std::string& path);
-
 /// Serves a session to one page at a time (docs/protocol.md). A client must address the server by its own
 /// address, which excludes pages of other sites, and must know a random token.
 class Server {

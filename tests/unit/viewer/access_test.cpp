@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "server/server.hpp"
 #include "supple/error.hpp"
 
 namespace supple::viewer {
