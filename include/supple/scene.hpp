@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +19,10 @@
 #include "supple/views.hpp"
 
 namespace supple {
+
+class Scene;
+/// A function that sees each step of a scene; see `Scene::set_observer`.
+using DetectObserver = std::function<void(const Scene&, const DetectRequest&)>;
 
 /// Rigid placement: `rotation` (row-major; it may also scale or shear), then `translation`. A point p becomes
 /// fl(R p) + t. Each row of R p is summed from left to right in double, without fused multiply-add.
@@ -141,6 +146,11 @@ class Scene {
   /// Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`. When it
   /// excludes all pairs whose volumes overlap, `detect` also asks for others, until it accepts one.
   void set_pair_filter(PairFilter filter);
+
+  /// Sets a function that `detect` calls at its end, in the same thread, unless the call was stopped; an
+  /// empty function removes it. It reads the scene and its `result`, and must not change the scene. What it
+  /// throws leaves `detect`, and the result stays. Without an observer, this costs nothing.
+  void set_observer(DetectObserver observer);
 
   /// Finds every contact of the requested kinds: intersections, penetration and pairs within the margins at
   /// the current positions, and continuous contacts within the step. The request defaults to the options of
@@ -308,6 +318,8 @@ class Scene {
   std::vector<ObjectId> objects() const;  ///< ascending
   bool contains(ObjectId object) const;
   const std::string& name(ObjectId object) const;
+  /// The options of an object, with all changes since it was added.
+  const ObjectOptions& options(ObjectId object) const;
   std::uint64_t user_data(ObjectId object) const;  ///< `ObjectOptions::user_data`
   std::size_t vertex_count(ObjectId object) const;
   std::size_t triangle_count(ObjectId object) const;

@@ -178,6 +178,8 @@ class Simulation {
 
   /// The scene of the simulation. Only the simulation moves its objects.
   const Scene& scene() const;
+  /// `Scene::set_observer` of this scene: it sees each detection of the simulation.
+  void set_observer(DetectObserver observer);
   /// `Scene::keep_result` of this scene.
   std::shared_ptr<const void> keep_result();
   /// The positions of all vertices. They are valid until the next step. Of a rigid object, the first call

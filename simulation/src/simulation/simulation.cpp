@@ -182,6 +182,7 @@ const DetectResult& Simulation::Implementation::set_detection(const SceneOptions
       made.set_positions(id, objects_[i]->positions());
   }
   made.detect();
+  made.set_observer(observer);
   scene = std::move(made);
   options.scene = scene_options;
   for (const auto& object : objects_) object->is_on_path = false;
@@ -422,6 +423,10 @@ double Simulation::motion_seconds() const {
 }
 const SimulationOptions& Simulation::options() const {
   return implementation_->options;
+}
+void Simulation::set_observer(DetectObserver observer) {
+  implementation_->observer = observer;
+  implementation_->scene.set_observer(std::move(observer));
 }
 std::shared_ptr<const void> Simulation::keep_result() {
   return implementation_->scene.keep_result();

@@ -58,6 +58,7 @@ class Simulation::Implementation {
 
   SimulationOptions options;
   Scene scene;
+  DetectObserver observer;  // of the scene
   std::uint64_t steps = 0;
   double motion_seconds = 0;
 

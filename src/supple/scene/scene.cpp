@@ -125,8 +125,14 @@ void Scene::set_pair_filter(PairFilter filter) {
   implementation_->world.set_filter(std::move(filter));
 }
 
+void Scene::set_observer(DetectObserver observer) {
+  implementation_->observer = std::move(observer);
+}
+
 const DetectResult& Scene::detect(const DetectRequest& request) {
-  return implementation_->detect(request);
+  const DetectResult& result = implementation_->detect(request);
+  if (implementation_->observer && !result.stopped) implementation_->observer(*this, request);
+  return result;
 }
 const DetectResult& Scene::search(const DetectRequest& request, const PairFilter& only) {
   return implementation_->search(request, only);
@@ -165,6 +171,10 @@ bool Scene::contains(ObjectId object) const {
 
 const std::string& Scene::name(ObjectId object) const {
   return implementation_->world.object(object, "name").options.name;
+}
+
+const ObjectOptions& Scene::options(ObjectId object) const {
+  return implementation_->world.object(object, "options").options;
 }
 
 std::uint64_t Scene::user_data(ObjectId object) const {

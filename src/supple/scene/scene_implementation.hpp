@@ -37,6 +37,7 @@ class Scene::Implementation {
   Queries queries{world};
   QueryVerifier query_verifier{world};
   DetectResult result;
+  DetectObserver observer;
 
  private:
   /// Throws an error when the request is out of range.
