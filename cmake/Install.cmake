@@ -8,9 +8,13 @@ install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${package_dir})
 
 # Each component has its own targets file, which find_package reads only on request. So a program that links
 # only the core needs none of Assimp, libzip, pugixml and HDF5.
-foreach(component IN ITEMS models simulation formats recording distributed)
+foreach(component IN ITEMS models simulation formats recording distributed viewer)
   if(TARGET supple_${component})
-    install(TARGETS supple_${component} EXPORT supple_${component}_targets
+    set(targets supple_${component})
+    if(component STREQUAL "viewer")
+      list(APPEND targets supple_viewer_session)
+    endif()
+    install(TARGETS ${targets} EXPORT supple_${component}_targets
       ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${component}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
     install(EXPORT supple_${component}_targets NAMESPACE supple:: DESTINATION ${package_dir})

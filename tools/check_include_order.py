@@ -23,20 +23,20 @@ LAYERS = [
 ]
 LONGEST_CHAIN = 5
 # An octree has volumes of its nodes, which are fitted; a search has a pass for each kind, which has parts; a
-# body has a solver with equations, which sum forces over a network; a session reads arguments as settings of a
-# stage for its player; cells of the contest take turns of contestants, whose tasks are workloads.
-LONGER_CHAINS = {"octree": 6, "answers": 6, "simulation/src": 7, "viewer/session": 6, "benchmarks": 7}
+# body has a solver with equations, which sum forces over a network; a session has commands
+# that read arguments as settings of a stage; cells of the contest take turns of contestants, whose tasks are workloads.
+LONGER_CHAINS = {"octree": 6, "answers": 6, "simulation/src": 7, "viewer/session": 7, "benchmarks": 7}
 MOST_FILES = 20
 # Libraries around the core, each with the last layer whose internal headers it may include; recording: none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None, "distributed": "scene"}
-PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "cli", "experiments", "examples", "benchmarks"]
+PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "viewer/attach", "cli", "experiments", "examples", "benchmarks"]
 # Folders of small programs that do not depend on each other.
 LISTS = ["examples"]
 # Folders of the viewer that others may include although they are not public: "session/scene_view.hpp".
-SHARED = {"viewer/server": ["session"], "cli": ["session", "export", "server"], "experiments": ["session"]}
+SHARED = {"viewer/server": ["session"], "viewer/attach": ["session", "export", "server"], "cli": ["session", "export", "server"], "experiments": ["session"]}
 # Programs that are built on the parts of another one; a benchmark divides space as a distributed scene does.
 BUILT_ON = {"experiments": "cli", "benchmarks": "distributed/src"}
-PUBLIC = ["include"] + [f"{name}/include" for name in COMPONENTS]
+PUBLIC = ["include", "viewer/include"] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 

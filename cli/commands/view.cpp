@@ -15,13 +15,13 @@
 #include "base/missing_threads.hpp"
 #include "base/output_names.hpp"
 #include "base/text.hpp"
-#include "commands/browser.hpp"
 #include "commands/build_scene_view.hpp"
 #include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
 #include "inputs/inputs.hpp"
 #include "server/access.hpp"
+#include "server/browser_visit.hpp"
 #include "server/server.hpp"
 #include "session/messages/mesh_warnings.hpp"
 #include "session/packed/packed_scene.hpp"
@@ -119,8 +119,11 @@ int serve(viewer::SceneView show, const ViewOptions& options) {
   const Interruption interruption;
   fmt::print("Open {}\n", server.url());
   std::fflush(stdout);
-  std::optional<BrowserVisit> visit;
-  if (options.open_browser) visit.emplace(server.url());
+  std::optional<viewer::BrowserVisit> visit;
+  if (options.open_browser) {
+    visit.emplace(server.url());
+    if (!visit->problem().empty()) fmt::print(stderr, "supple: warning: {}\n", one_line(visit->problem()));
+  }
   server.run([&] { return interruption.signal() != 0; });
   return exit_done;
 }

@@ -290,6 +290,8 @@ class Server::Implementation {
   std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
   const Access& access() const { return access_; }
 
+  void wake() { session_.wake(); }
+
   void run(const std::function<bool()>& should_end) {
     accept();
     watch(should_end);
@@ -436,6 +438,10 @@ const std::string& Server::token() const {
 std::string Server::url() const {
   const std::string scheme = "http://";
   return scheme + implementation_->access().host() + "/?token=" + token();
+}
+
+void Server::wake() {
+  implementation_->wake();
 }
 
 void Server::run(const std::function<bool()>& should_end) {

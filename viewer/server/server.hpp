@@ -38,6 +38,8 @@ class Server {
   /// The address to open in a browser. When the server listens on all interfaces, one that others can use.
   std::string url() const;
 
+  /// The session has something to do: a program has come to a step. Any thread can call it.
+  void wake();
   /// Serves until `should_end`, which is called ten times a second, returns true; then notifies the page.
   /// Throws `Error` when the session fails permanently.
   void run(const std::function<bool()>& should_end);

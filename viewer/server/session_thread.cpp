@@ -38,8 +38,21 @@ void SessionThread::page_came(PageNumber page) {
 }
 
 void SessionThread::page_left(PageNumber page) {
-  const std::lock_guard lock(mutex_);
-  if (page_ == page) page_ = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (page_ != page) return;
+    page_ = 0;
+    has_work_ = true;
+  }
+  work_.notify_one();
+}
+
+void SessionThread::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    has_work_ = true;
+  }
+  work_.notify_one();
 }
 
 std::size_t SessionThread::command(PageNumber page, std::string text) {
@@ -118,9 +131,14 @@ double SessionThread::let_time_pass() {
   const Clock::time_point now = Clock::now();
   const double seconds = std::chrono::duration<double>(now - last_).count();
   last_ = now;
+  bool has_page = false;
   {
     const std::lock_guard lock(mutex_);
-    if (page_ == 0) return for_ever;
+    has_page = page_ != 0;
+  }
+  if (!has_page) {
+    session_.leave();
+    return for_ever;
   }
   return session_.ended() ? for_ever : session_.advance(seconds);
 }

@@ -54,6 +54,8 @@ class SessionThread {
   void page_left(PageNumber page);
   /// Returns how many bytes of commands wait.
   std::size_t command(PageNumber page, std::string text);
+  /// The session has something to do.
+  void wake();
   /// The last message for this page has been sent or lost.
   void message_sent(PageNumber page);
 

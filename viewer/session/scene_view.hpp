@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -21,6 +22,8 @@ struct ViewedObject {
   TriangleMesh mesh;
   ObjectOptions options{};
   std::variant<std::monostate, WaveMotion, MassSpringMotion, RigidMotion> motion{};
+  /// In the scene of a program; without an id, the object was removed.
+  std::optional<ObjectId> id{};
 };
 
 /// Time series of a recording: rows of numbers, and begin and end events of pairs.
@@ -50,12 +53,15 @@ class Frames {
   virtual const Series& series() const = 0;
 };
 
-/// Everything a session shows: objects that a simulation moves, or that were recorded.
+class Program;
+
+/// Everything a session shows: objects that a simulation moves, that were recorded, or that a program moves.
 struct SceneView {
   std::string title{};
   SimulationOptions simulation{};
   std::vector<ViewedObject> objects{};
-  std::shared_ptr<const Frames> frames{};  ///< null for a simulation
+  std::shared_ptr<const Frames> frames{};  ///< only of a recording
+  std::shared_ptr<Program> program{};      ///< only of a running program
 };
 
 }  // namespace supple::viewer

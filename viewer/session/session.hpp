@@ -28,6 +28,8 @@ class Session {
 
   /// Call when a page connects or reconnects. It gets the whole scene again and has no credit yet.
   void greet();
+  /// Call when no page is connected any more.
+  void leave();
   /// Executes a command in JSON. An invalid command produces a failure message, not an exception.
   void command(std::string_view json);
   /// Lets `seconds` pass; takes at most one step or frame. Returns the number of seconds until the next

@@ -342,7 +342,7 @@ CONTRACTS = {
     'DistributedScene::add_part':
         "Adds a part of an object. `triangles` have the numbers of the part's vertices: 0 is the first of `part.vertices`. All ranks give the same options. Throws `Error` as `add` does.",
     'DistributedScene::closest':
-        'As `Scene.closest` for the points of this rank, among the objects of all ranks. The options are the same on all ranks; a signed distance is an error. Each point goes to the ranks whose regions its ball meets, whose radius is the distance of the farthest corner of a cluster near it.',
+        "As `Scene.closest` for the points of this rank, among the objects of all ranks. The options are the same on all ranks; a signed distance is an error. Takes time for each point and each cluster of the regions that its ball meets, whose radius is the distance of a cluster's farthest corner.",
     'DistributedScene::collision_free_step':
         'As `Scene.collision_free_step`; the same on all ranks.',
     'DistributedScene::detect':
@@ -389,8 +389,6 @@ CONTRACTS = {
         'As `Scene.set_vertex_groups` for the vertices that this rank added, in its order. Ranks that share a vertex give it the same numbers.',
     'DistributedScene::stats':
         'What this rank did in the last collective call.',
-    'DistributedScene::verify':
-        'As `Scene.verify` of the last call, which must have been `detect`; the report is the same on all ranks, which share the pairs of objects. It takes the objects anew from the ranks that added them, so it also verifies what was sent. Each rank needs memory for the whole scene.',
     'ElementVertices::begin':
         'See `ElementVertices::begin` in supple/contact.hpp.',
     'ElementVertices::end':
@@ -530,7 +528,7 @@ CONTRACTS = {
     'Scene::objects':
         'ascending',
     'Scene::options':
-        'Calls `function(object, vertex, weight)` for each vertex of a pair: first those of a, then those of b. The weights are the barycentric coordinates of the closest or touching points, positive for a and negative for b. So their sum is 0, but for rounding, and the sum of weight times position is the vector from the point of b to the point of a. Of a `Contact`, the points are the mean of its points in both triangles, or the centres of the triangles when `SceneOptions.contact_points` is off or a triangle is flat. O(1). Throws `Error` as `vertices_of` does; of a `Contact` also when it is not of `result`.',
+        'The options of an object, with all changes since it was added.',
     'Scene::overlaps':
         'All triangles that overlap each box or sphere, ordered by query, object and triangle. A box or sphere with a number that is not finite, a box with min > max, and a sphere with a negative radius overlap nothing.',
     'Scene::position':
@@ -549,6 +547,8 @@ CONTRACTS = {
         'Changes `ObjectOptions.min_separation`, O(1). Throws `Error` when it is out of range.',
     'Scene::set_motion':
         'Sets a path for continuous contacts: every vertex moves straight from its position in `from` (t = 0) to its position in `to` (t = 1). Copies both, O(n). The path stays until another call moves the object; all other calls place it at rest. Everything except continuous contacts uses the end of the path. Throws `Error` as `set_positions` does, and when one view is `float` and the other `double`.',
+    'Scene::set_observer':
+        'Sets a function that `detect` calls at its end, in the same thread, unless the call was stopped; an empty function removes it. It reads the scene and its `result`, and must not change the scene. What it throws leaves `detect`, and the result stays. Without an observer, this costs nothing.',
     'Scene::set_pair_filter':
         'Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`. When it excludes all pairs whose volumes overlap, `detect` also asks for others, until it accepts one.',
     'Scene::set_positions':
@@ -635,6 +635,8 @@ CONTRACTS = {
         'The scene of the simulation. Only the simulation moves its objects.',
     'Simulation::set_detection':
         'Replaces the scene by one with other options, and detects at the present positions. `objects` has all objects, in the order in which they were added. Their motion keeps its state: only the detection changes. Events begin again. Cost: that of `Scene.add` for each object. Throws `Error` as `Scene` does, and when an object was removed before; then nothing changes.',
+    'Simulation::set_observer':
+        '`Scene.set_observer` of this scene: it sees each detection of the simulation.',
     'Simulation::set_positions':
         "Sets the positions of an object without motion, of a body, which keeps its velocities, or of a rigid object, which keeps its velocity and spin and turns about its new centre from now on. They apply at once: the paths of the next step start there. Throws `Error` as `Scene.set_positions` does, and when the user's motion moves the object.",
     'Simulation::step':
@@ -807,6 +809,24 @@ CONTRACTS = {
         'The value of a word; nothing when no value has this word.',
     'vertices_at_same_position':
         'For each vertex the first one with the same coordinates. Equals `ObjectOptions.same_vertex` of `ObjectOptions.weld`. A vertex with a NaN has no equal. O(n).',
+    'viewer::View::close':
+        'Ends a pause, tells the page that the program has ended, and frees the port. Later steps are not shown. Any thread can call it.',
+    'viewer::View::frame_count':
+        'steps that the page was given',
+    'viewer::View::is_paused':
+        'the program waits, or will in the next step',
+    'viewer::View::seconds_in_steps':
+        'time that frames have taken, without pauses',
+    'viewer::View::set_breaks':
+        'the program waits, or will in the next step',
+    'viewer::View::step_count':
+        'steps since `attach`',
+    'viewer::View::url':
+        'The address of the page, with a secret token.',
+    'viewer::View::wait':
+        'Shows the last step until the page continues the program, the view is closed, or a stop is requested. The scene must exist, and must not have been moved.',
+    'viewer::attach':
+        "Shows a scene in a page while the program runs: from now on, `detect` shows its result. Replaces the observer of the scene. The page can pause the program in `detect`, take single steps, and set breaks. The page reads the user's scene itself, only while `detect` waits. Threads: one for the session, one for the network. Throws `Error` when an option is out of range, when the address is not available, and when the library was built without SUPPLE_BUILD_VIEWER.",
     'visit_field':
         'Visits a member of a record; `key` is its name for users.',
     'welded':

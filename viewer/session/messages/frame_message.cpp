@@ -42,11 +42,11 @@ void FramePacker::forget_positions() {
   paper_vertices_.forget();
 }
 
-void FramePacker::add_step(const Source& source) {
+void FramePacker::add_step(std::uint64_t step, double motion_seconds, const StepStats& stats) {
   rows_.reserve(most_rows * row_width);
-  if (!rows_.empty() && source.step() == last_row_)
+  if (!rows_.empty() && step == last_row_)
     rows_.resize(rows_.size() - row_width);  // detected again after the step
-  else if (source.step() != last_row_ + 1)
+  else if (step != last_row_ + 1)
     rows_.clear();
   if (rows_.size() == most_rows * row_width) {
     constexpr std::size_t surplus = most_rows / 4;  // many at once, so that the cost per step is small
@@ -54,10 +54,9 @@ void FramePacker::add_step(const Source& source) {
     sent_rows_ -= std::min(sent_rows_, surplus);
   }
   sent_rows_ = std::min(sent_rows_, rows_.size() / row_width);
-  rows_.push_back(source.motion_seconds());
-  for_each_statistic(source.scene().result().stats,
-                     [&](const char*, double value) { rows_.push_back(value); });
-  last_row_ = source.step();
+  rows_.push_back(motion_seconds);
+  for_each_statistic(stats, [&](const char*, double value) { rows_.push_back(value); });
+  last_row_ = step;
 }
 
 void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
@@ -74,7 +73,9 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   add_events(frame.source.scene().result());
   add_statistics(frame);
   if (frame.layers.candidates) add_candidates(frame);
-  for (const std::uint32_t object : frame.layers.octree_objects) add_octree(frame, object);
+  for (const std::uint32_t object : frame.layers.octree_objects) {
+    if (frame.source.scene().contains(frame.source.id(object))) add_octree(frame, object);
+  }
   if (frame.layers.colliding_nodes) add_colliding_nodes(frame, *frame.layers.colliding_nodes);
   if (frame.layers.scene_regions) add_scene_regions(frame);
   if (frame.layers.colliding_vertices)
@@ -139,7 +140,7 @@ void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact
 
 void FramePacker::add_impacts(const FrameView& frame) {
   const auto contacts = frame.source.scene().result().continuous_contacts;
-  if (!contains(frame.source.scene().options().contacts, ContactKinds::continuous)) return;
+  if (!contains(frame.source.contacts(), ContactKinds::continuous)) return;
   const std::size_t count = limited("impacts", contacts.size());
   const auto rows = message_->add<Ids>(Tag::impacts, count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -162,7 +163,7 @@ void FramePacker::add_impacts(const FrameView& frame) {
 
 /// Adds the proximity pairs, each with its closest points.
 void FramePacker::add_proximity_pairs(const FrameView& frame) {
-  if (!contains(frame.source.scene().options().contacts, ContactKinds::proximity)) return;
+  if (!contains(frame.source.contacts(), ContactKinds::proximity)) return;
   const auto pairs = frame.source.scene().result().proximity_pairs;
   const std::size_t count = limited("proximity_pairs", pairs.size());
   const auto objects = message_->add<std::array<std::uint32_t, 2>>(Tag::proximity_pairs, count);
@@ -181,7 +182,7 @@ void FramePacker::add_proximity_pairs(const FrameView& frame) {
 /// Adds the vertices inside solid objects, each with the closest point of the surface.
 void FramePacker::add_penetrations(const FrameView& frame) {
   const Scene& scene = frame.source.scene();
-  if (!contains(scene.options().contacts, ContactKinds::penetration)) return;
+  if (!contains(frame.source.contacts(), ContactKinds::penetration)) return;
   const auto penetrations = scene.result().penetrations;
   const std::size_t count = limited("penetrations", penetrations.size());
   const auto ids = message_->add<std::array<std::uint32_t, 4>>(Tag::penetrations, count);
@@ -200,7 +201,7 @@ void FramePacker::add_penetrations(const FrameView& frame) {
 /// Adds as many curves as there is room for with the vertices that they enclose.
 void FramePacker::add_curves(const FrameView& frame) {
   const Scene& scene = frame.source.scene();
-  if (!contains(scene.options().contacts, ContactKinds::penetration)) return;
+  if (!contains(frame.source.contacts(), ContactKinds::penetration)) return;
   const std::span<const IntersectionCurve> all = scene.result().curves;
   const auto vertex_end = [](const IntersectionCurve& curve) {
     return std::size_t{curve.first_enclosed} + curve.enclosed_count_a + curve.enclosed_count_b;
@@ -263,7 +264,8 @@ void FramePacker::add_changes(Tag begin, Tag end, ObjectPairs& sent) {
 
 /// Adds the rows that the page does not have. The last one is that of this frame.
 void FramePacker::add_statistics(const FrameView& frame) {
-  add_step(frame.source);
+  const Source& source = frame.source;
+  add_step(source.step(), source.motion_seconds(), source.scene().result().stats);
   const auto unsent = std::span(rows_).subspan(sent_rows_ * row_width);
   std::copy(unsent.begin(), unsent.end(), message_->add<double>(Tag::statistics, unsent.size()).begin());
 }
@@ -395,6 +397,7 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.member("playing", frame.playing);
   json_.member("speed", frame.speed);
   json_.member("loop", frame.loop);
+  frame.source.add_to(json_, frame.center);
   json_.key("octree_levels");
   json_.begin_array();
   for (const std::uint32_t level : octree_levels_) json_.value(level);

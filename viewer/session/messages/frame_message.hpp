@@ -37,8 +37,8 @@ class FramePacker {
   void forget();
   /// Call when the page keeps only events and statistics.
   void forget_positions();
-  /// Call after each step of a simulation: the next frame contains the statistics of all steps.
-  void add_step(const Source& source);
+  /// Call after each step of a simulation or a program: the next frame contains the statistics of all steps.
+  void add_step(std::uint64_t step, double motion_seconds, const StepStats& stats);
   void pack(const FrameView& frame, MessageWriter& message);
 
  private:

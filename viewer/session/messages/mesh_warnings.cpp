@@ -22,7 +22,8 @@ struct Found {
 };
 
 bool has_elements(const ViewedObject& object) {
-  const auto& [mesh, options, motion] = object;
+  const TriangleMesh& mesh = object.mesh;
+  const ObjectOptions& options = object.options;
   return !mesh.triangles.empty() || !mesh.edges.empty() || !mesh.points.empty() || !options.edges.empty() ||
          !options.points.empty();
 }

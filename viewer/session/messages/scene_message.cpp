@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "messages/long_steps.hpp"
 #include "messages/mesh_warnings.hpp"
 #include "messages/statistics.hpp"
+#include "program/program_commands.hpp"
 #include "sources/extent.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/simulation_descriptions.hpp"
@@ -24,13 +26,19 @@ const MassSpringMotion* body_of(const ViewedObject& object) {
   return std::get_if<MassSpringMotion>(&object.motion);
 }
 
+std::string_view name_of(const Stage& stage, std::size_t object) {
+  if (stage.show().program != nullptr) return "";
+  return stage.source().scene().name(stage.source().id(object));
+}
+
 void add_objects(const Stage& stage, JsonText& json) {
   json.key("objects");
   json.begin_array();
   for (std::size_t i = 0; i < stage.show().objects.size(); ++i) {
     const ViewedObject& object = stage.show().objects[i];
     json.begin_object();
-    json.member("name", stage.source().scene().name(stage.source().id(i)));
+    // The scene of a program cannot be read at all times.
+    json.member("name", object.id ? std::string_view(object.options.name) : name_of(stage, i));
     json.member("vertices", std::uint64_t{object.mesh.positions.size()});
     json.member("triangles", std::uint64_t{object.mesh.triangles.size()});
     json.member("static", object.options.is_static);
@@ -38,6 +46,7 @@ void add_objects(const Stage& stage, JsonText& json) {
     json.member("waves", std::holds_alternative<WaveMotion>(object.motion));
     json.member("rigid", std::holds_alternative<RigidMotion>(object.motion));
     json.member("self_collision", object.options.self_collision);
+    if (stage.show().program != nullptr) json.member("removed", !object.id.has_value());
     json.end_object();
   }
   json.end_array();
@@ -132,8 +141,10 @@ bool has_bodies(const SceneView& show) {
 void add_settings(Stage& stage, JsonText& json) {
   json.key("settings");
   json.begin_array();
-  add_descriptions<SceneOptions>(json);
-  add_descriptions<ObjectOctreeOptions>(json);
+  if (stage.program() == nullptr) {  // a program has chosen its options
+    add_descriptions<SceneOptions>(json);
+    add_descriptions<ObjectOctreeOptions>(json);
+  }
   if (stage.simulation() != nullptr) {
     for_each_restart_setting([&]<class Struct, class Value>(const Field<Struct, Value>& field, auto) {
       if (!std::is_same_v<Value, Integrator> || has_bodies(stage.show())) add_description(field, true, json);
@@ -185,14 +196,18 @@ void add_kinds(JsonText& json) {
 }
 
 void add_abilities(Stage& stage, JsonText& json) {
-  json.member("source", stage.recording() ? "recording" : "simulation");
+  json.member("source", stage.recording() ? "recording" : stage.program() ? "program" : "simulation");
   json.key("frames");
   if (RecordingSource* const recording = stage.recording())
     json.value(recording->frame_count());
   else
     json.null();
-  const std::vector<std::string> simulation{"play", "reset", "grab", "set"}, recording{"play", "seek", "set"};
-  json.member("can", std::span<const std::string>(stage.recording() ? recording : simulation));
+  const std::vector<std::string> simulation{"play", "reset", "grab", "set"}, recording{"play", "seek", "set"},
+      program{"play", "break"};
+  json.member("can", std::span<const std::string>(stage.recording() ? recording
+                                                  : stage.program() ? program
+                                                                    : simulation));
+  if (ProgramSource* const source = stage.program()) write_breaks(source->program().state().breaks, json);
 }
 
 void add_column_names(Stage& stage, JsonText& json) {

@@ -16,6 +16,7 @@ std::uint64_t last_frame(const RecordingSource& recording) {
 }  // namespace
 
 void Player::play(Stage& stage) {
+  if (ProgramSource* const source = stage.program()) source->program().run();
   playing_ = true;
   steps_ = 0;
   due_ = 0;
@@ -25,12 +26,15 @@ void Player::play(Stage& stage) {
     target_ = 0;
 }
 
-void Player::pause() {
+void Player::pause(Stage& stage) {
+  if (ProgramSource* const source = stage.program()) source->program().pause();
   playing_ = false;
   steps_ = 0;
 }
 
-void Player::step(std::int64_t count) {
+void Player::step(Stage& stage, std::int64_t count) {
+  if (ProgramSource* const source = stage.program())
+    return source->program().step(static_cast<std::uint64_t>(count));
   playing_ = false;
   steps_ += count;
 }
@@ -56,9 +60,17 @@ void Player::restart() {
 Player::Outcome Player::advance(Stage& stage, double seconds) {
   // Clocks jump. NaN counts as no time.
   const double passed = seconds > 0 ? std::min(seconds, longest_pause) : 0;
+  if (ProgramSource* const source = stage.program()) return advance_program(*source);
   if (SimulationSource* const simulation = stage.simulation())
     return advance_simulation(*simulation, stage.show().simulation.time_step, passed);
   return advance_recording(*stage.recording(), passed);
+}
+
+/// The program has a clock of its own.
+Player::Outcome Player::advance_program(ProgramSource& source) {
+  const bool changed = source.advance();
+  playing_ = source.state().runs;
+  return {changed, source.is_open() && !source.state().is_held ? 0 : idle_seconds};
 }
 
 Player::Outcome Player::advance_simulation(SimulationSource& simulation, double time_step, double seconds) {

@@ -15,9 +15,9 @@ class Player {
   static constexpr double idle_seconds = 1;
 
   void play(Stage& stage);
-  void pause();
+  void pause(Stage& stage);
   /// Pauses, then goes `count` steps or frames forward, or backward when negative.
-  void step(std::int64_t count);
+  void step(Stage& stage, std::int64_t count);
   void set_speed(double factor);  ///< 0: as fast as possible
   void set_loop(bool on) { loop_ = on; }
   /// Goes to a frame, which must exist.
@@ -40,6 +40,7 @@ class Player {
   Outcome advance(Stage& stage, double seconds);
 
  private:
+  Outcome advance_program(ProgramSource& source);
   Outcome advance_simulation(SimulationSource& simulation, double time_step, double seconds);
   Outcome advance_recording(RecordingSource& recording, double seconds);
   bool take_due_step(double time_step, double seconds);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "program/program_source.hpp"
 #include "scene_view.hpp"
 #include "settings.hpp"
 #include "sources/center.hpp"
@@ -11,7 +12,8 @@
 
 namespace supple::viewer {
 
-/// A scene view with settings applied, and the source of its positions: a simulation or a recording.
+/// A scene view with settings applied, and the source of its positions: a simulation, a recording or a
+/// running program.
 class Stage {
  public:
   /// A recording starts at `frame`. Throws `Error` when an object or an option is invalid.
@@ -26,8 +28,12 @@ class Stage {
   const SceneView& show() const { return show_; }
   const Center& center() const { return center_; }
   const Source& source() const;
-  SimulationSource* simulation() { return simulation_.get(); }  ///< null for a recording
-  RecordingSource* recording() { return recording_.get(); }     ///< null for a simulation
+  // Two of these are null.
+  SimulationSource* simulation() { return simulation_.get(); }
+  RecordingSource* recording() { return recording_.get(); }
+  ProgramSource* program() { return program_.get(); }
+  /// Whether the scene of the source can be read now.
+  bool is_open() const { return !program_ || program_->is_open(); }
   /// False when time changes nothing.
   bool has_motion() const;
 
@@ -36,6 +42,7 @@ class Stage {
   Center center_;
   std::unique_ptr<SimulationSource> simulation_;
   std::unique_ptr<RecordingSource> recording_;
+  std::unique_ptr<ProgramSource> program_;
 };
 
 }  // namespace supple::viewer

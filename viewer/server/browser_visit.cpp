@@ -1,7 +1,6 @@
-#include "commands/browser.hpp"
+#include "browser_visit.hpp"
 
 #include <fcntl.h>
-#include <fmt/core.h>
 #include <spawn.h>
 #include <unistd.h>
 
@@ -13,11 +12,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/text.hpp"
-
 extern char** environ;
 
-namespace supple::cli {
+namespace supple::viewer {
 namespace {
 
 #ifdef __APPLE__
@@ -59,23 +56,24 @@ bool write_text(int file, const std::string& text) {
   return std::fclose(stream) == 0 && written;
 }
 
-/// Writes a page that leads to an address, as a new file of mode 0600. Returns an empty path when that fails.
-fs::path write_page(const std::string& url) {
-  const std::string text = fmt::format(
+/// Writes a page that leads to an address, as a new file of mode 0600. Returns an empty path, and the
+/// problem, when that fails.
+fs::path write_page(const std::string& url, std::string& problem) {
+  const std::string text =
       "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Supple</title>\n"
       "<meta name=\"referrer\" content=\"no-referrer\">\n"
-      "<meta http-equiv=\"refresh\" content=\"0; url={0}\">\n"
-      "<p><a href=\"{0}\">To the page of supple view</a></p>\n</html>\n",
-      url);
+      "<meta http-equiv=\"refresh\" content=\"0; url=" +
+      url +
+      "\">\n"
+      "<p><a href=\"" +
+      url + "\">To the page of Supple</a></p>\n</html>\n";
   constexpr std::string_view ending = ".html";
   std::string name = folder_of_pages() / "supple-XXXXXX";
   name += ending;
   const int file = mkostemps(name.data(), static_cast<int>(ending.size()), O_CLOEXEC);
   if (file >= 0 && write_text(file, text)) return name;
-  fmt::print(stderr,
-             "supple: warning: {}: cannot write the page that leads the browser to the address: {}; open it "
-             "yourself\n",
-             one_line(name), std::strerror(errno));
+  problem = name + ": cannot write the page that leads the browser to the address: " + std::strerror(errno) +
+            "; open it yourself";
   if (file >= 0) unlink(name.c_str());
   return {};
 }
@@ -105,7 +103,7 @@ void open_in_browser(const fs::path& page) {
 
 BrowserVisit::BrowserVisit(const std::string& url) {
   if (!has_screen()) return;
-  page_ = write_page(url);
+  page_ = write_page(url, problem_);
   if (!page_.empty()) open_in_browser(page_);
 }
 
@@ -113,4 +111,4 @@ BrowserVisit::~BrowserVisit() {
   if (!page_.empty()) unlink(page_.c_str());
 }
 
-}  // namespace supple::cli
+}  // namespace supple::viewer

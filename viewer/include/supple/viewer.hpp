@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "supple/call_limits.hpp"
+#include "supple/scene.hpp"
+#include "supple/simulation.hpp"
+
+namespace supple::viewer {
+
+/// Events that pause a program. Each pauses it in the step in which it begins, not again while it lasts. The
+/// page can change them.
+struct BreakOptions {
+  /// Two objects begin to touch: with intersections or continuous contacts.
+  bool contact_begin = false;
+  /// Only contacts with these objects, by name: of one, or between both. Empty: any object.
+  std::array<std::string, 2> objects{};
+  bool intersection = false;                      ///< there are intersections
+  std::optional<std::uint64_t> contacts_above{};  ///< there are more contacts, of all kinds together
+  std::optional<double> depth_above{};            ///< a vertex is deeper inside a solid; penetration
+  bool not_finite = false;                        ///< a vertex is NaN or infinite
+
+  bool operator==(const BreakOptions&) const = default;
+};
+
+/// How a program is shown; see `attach`.
+struct AttachOptions {
+  std::string title{};                ///< of the page; "my program" when empty
+  std::string address = "127.0.0.1";  ///< an IP address of this machine
+  std::uint16_t port = 0;             ///< 0: any free port
+  /// Keeps the token of the address, so that a page finds the program again when it is started again with the
+  /// same port. Made when it does not exist.
+  std::string token_file{};
+  bool open_browser = true;  ///< opens the page in the user's browser, if there is a screen
+  /// The share of the program's time that frames may take, at least 0. The page then gets fewer frames. A
+  /// pause does not count.
+  double max_slowdown = 0.03;
+  double time_step = 0;  ///< seconds between two steps, for the time that the page shows; 0: no time
+  /// The first step and each break wait until a page is connected. Without this option, nothing waits while
+  /// no page is connected.
+  bool wait_for_page = false;
+  BreakOptions breaks{};
+};
+
+/// The connection of a program to a page. Its destructor closes it.
+class View {
+ public:
+  /// The threads of the view.
+  class Implementation;
+  /// `attach` calls it.
+  explicit View(std::unique_ptr<Implementation> implementation);
+  View(View&&) noexcept;
+  View& operator=(View&&) noexcept;
+  ~View();
+
+  /// The address of the page, with a secret token.
+  const std::string& url() const;
+  std::uint64_t step_count() const;   ///< steps since `attach`
+  std::uint64_t frame_count() const;  ///< steps that the page was given
+  double seconds_in_steps() const;    ///< time that frames have taken, without pauses
+  bool is_paused() const;             ///< the program waits, or will in the next step
+  void set_breaks(const BreakOptions& breaks);
+  /// Shows the last step until the page continues the program, the view is closed, or a stop is requested.
+  /// The scene must exist, and must not have been moved.
+  void wait(const CallLimits& limits = {});
+  /// Ends a pause, tells the page that the program has ended, and frees the port. Later steps are not shown.
+  /// Any thread can call it.
+  void close();
+
+ private:
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Shows a scene in a page while the program runs: from now on, `detect` shows its result. Replaces the
+/// observer of the scene. The page can pause the program in `detect`, take single steps, and set breaks. The
+/// page reads the user's scene itself, only while `detect` waits. Threads: one for the session, one for the
+/// network. Throws `Error` when an option is out of range, when the address is not available, and when the
+/// library was built without SUPPLE_BUILD_VIEWER.
+View attach(Scene& scene, const AttachOptions& options = {});
+/// The same for the scene of a simulation. The time step defaults to that of the simulation.
+View attach(Simulation& simulation, const AttachOptions& options = {});
+
+}  // namespace supple::viewer
