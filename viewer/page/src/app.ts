@@ -14,6 +14,7 @@ import { NodePairs } from "./panels/node_pairs";
 import { Card, Notices } from "./panels/notices";
 import { CurveTable } from "./panels/curve_table";
 import { Player } from "./panels/player";
+import { Program } from "./panels/program";
 import { Plots } from "./panels/plots";
 import { LAYER_ROWS, ScenePanel } from "./panels/scene_panel";
 import { Settings } from "./panels/settings";
@@ -100,6 +101,7 @@ export class App {
     this.tools = new Tools(model, this.client, view, inspector);
     this.tools.onPick = () => this.openTab("Inspect");
     this.plots = new Plots(model, (frame) => this.player.seek(frame));
+    const program = new Program(model, this.client, (point, reach) => view.flyTo(point, reach));
     this.framesDialog = new FramesDialog(
       model, view, (plan, signal, progress) => new FramesRun(model, this.client, view, plan, signal, progress).go(), (text) => this.notices.show(text),
     );
@@ -108,10 +110,10 @@ export class App {
       Contacts: new ContactTable(model, (point, reach) => view.flyTo(point, reach)).element,
       Curves: new CurveTable(model, (point, reach) => view.flyTo(point, reach)).element,
       Plots: this.plots.element,
-      Settings: new Settings(model, this.client).element,
+      Settings: h("div", {}, program.element, new Settings(model, this.client).element),
     });
     this.drawers = [this.drawer("scene", "Scene", this.scenePanel.element), this.drawer("details", "Details", details)];
-    this.body.append(this.header(), this.scenePanel.element, details, this.player.element, this.help, this.framesDialog.element);
+    this.body.append(this.header(), program.banner, this.scenePanel.element, details, this.player.element, this.help, this.framesDialog.element);
     listenToKeys(this);
   }
 

@@ -144,6 +144,8 @@ export class History {
 
 function kindOf(object: SceneObject, source: SceneText["source"]): string {
   if (object.static) return "static";
+  if (object.removed) return "removed";
+  if (source === "program") return "moved by the program";
   if (source === "recording") return "recorded";
   if (object.body) return "soft body";
   if (object.rigid) return "rigid";
@@ -254,7 +256,7 @@ export class Model extends Emitter<ModelEvents> {
     }
     this.frame = message;
     this.framesSeen += 1;
-    if (this.scene.source === "simulation") this.remember(message);
+    if (this.scene.source !== "recording") this.remember(message);
     this.emit("frame", message);
   }
 
@@ -297,6 +299,7 @@ export class Model extends Emitter<ModelEvents> {
   /** Whether time changes anything. */
   get moves(): boolean {
     const { scene } = this;
+    if (scene?.source === "program") return true;
     return scene !== null && (scene.frames === null ? scene.objects.some(({ body, waves, rigid }) => body || waves || rigid) : scene.frames > 1);
   }
 

@@ -61,10 +61,12 @@ export class Player {
   private build(): void {
     const scene = this.model.scene!;
     const isRecording = scene.source === "recording";
+    const isProgram = scene.source === "program";
     const { moves } = this.model;
     for (const element of this.recordingOnly) element.hidden = !isRecording || !moves;
-    for (const element of this.simulationOnly) element.hidden = isRecording || !moves;
+    for (const element of this.simulationOnly) element.hidden = isRecording || isProgram || !moves;
     for (const element of this.always) element.hidden = !moves;
+    this.speeds.hidden = !moves || isProgram;  // a program has its own speed
     this.fit();
     this.speeds.querySelector<HTMLOptionElement>("option[value='0']")!.hidden = isRecording;
     this.slider.max = String(Math.max(0, (scene.frames ?? 1) - 1));
@@ -89,7 +91,7 @@ export class Player {
     if (this.asked === text.step) this.asked = null;
     if (this.asked === null && this.wanted === null) this.slider.value = String(text.step);
     const of = this.frames === null ? "" : ` / ${readable(this.frames - 1)}`;
-    this.place.textContent = `${this.frames === null ? "step" : "frame"} ${readable(text.step)}${of} · ${text.time.toFixed(3)} s`;
+    this.place.textContent = `${this.frames === null ? "step" : "frame"} ${readable(text.step)}${of}${this.model.scene!.time_step > 0 ? ` · ${text.time.toFixed(3)} s` : ""}`;
     this.slider.setAttribute("aria-valuetext", this.place.textContent);
   }
 

@@ -36,6 +36,7 @@ export class Settings {
         return field.element;
       });
     const restarting = list(({ restarts }) => restarts);
+    this.detection.hidden = settings.length === 0;
     this.detection.replaceChildren(
       h("h3", {}, "Collision detection"),
       ...list(({ key }) => FIRST.includes(key)),

@@ -21,6 +21,8 @@ export interface SceneObject {
   waves?: boolean;
   rigid?: boolean;
   self_collision: boolean;
+  /** The object of a program is gone; its number stays. */
+  removed?: boolean;
 }
 
 export type Vector = [number, number, number];
@@ -47,10 +49,27 @@ export interface Kinds {
   impact: [string, string][];
 }
 
+/** An event that can pause a program: on or off, or the number above which it happens, null for never. */
+export interface BreakSetting {
+  key: string;
+  doc: string;
+  unit: string;
+  kind: "truth" | "number";
+  value: boolean | number | null;
+}
+
+/** Why a program is paused. */
+export interface Break {
+  event: string;
+  text: string;
+  objects: number[];
+  point: Vector | null;
+}
+
 export interface SceneText {
   version: string;
   title: string;
-  source: "simulation" | "recording";
+  source: "simulation" | "recording" | "program";
   generation: number;
   /** Counts restarts: the steps of one run follow each other. */
   run: number;
@@ -70,6 +89,10 @@ export interface SceneText {
   statistics: string[];
   series: string[];
   warnings: string[];
+  /** Only of a program. */
+  breaks?: BreakSetting[];
+  /** The names of objects of which contacts begin; empty for any. */
+  break_objects?: string[];
 }
 
 export interface FrameText {
@@ -84,6 +107,8 @@ export interface FrameText {
   omitted: Record<string, number>;
   /** Kinds of contacts for which there was nothing to test, and why. */
   untested: { kind: string; reason: string }[];
+  /** Of a program that an event has paused. */
+  break?: Break | null;
 }
 
 /** What begins and ends: contacts, collisions of the narrow phase, overlaps of the objects' volumes. */
@@ -272,7 +297,7 @@ function need(ok: boolean, name: string): void {
 function sceneText(json: Record<string, unknown>): SceneText {
   const s = json as unknown as SceneText;
   for (const name of ["version", "title", "contacts"] as const) need(isText(s[name]), name);
-  need(s.source === "simulation" || s.source === "recording", "source");
+  need(["simulation", "recording", "program"].includes(s.source), "source");
   need(isCount(s.generation), "generation");
   need(isCount(s.run), "run");
   need(isVector(s.center), "center");

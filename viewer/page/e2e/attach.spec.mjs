@@ -1,0 +1,196 @@
+// A program that shows its own scene (examples/attach.cpp): pause, step, continue, breaks, and how it ends.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { dirname, join } from "node:path";
+import { camera, hasFrame, step, textMessage, until } from "./harness.mjs";
+
+const FOR_EVER = 1_000_000_000;
+
+/** Starts the example, which takes thousands of steps in a second. */
+async function start(stage, steps = FOR_EVER) {
+  const program = { output: "", child: spawn(join(dirname(stage.supple), "example_attach"), [String(steps)]) };
+  program.ended = new Promise((done, fail) => {
+    program.child.on("error", fail);
+    program.child.on("exit", (code, signal) => done({ code, signal }));
+  });
+  program.stop = (signal) => {
+    program.child.kill(signal);
+    return program.ended;
+  };
+  stage.programs.push(program);
+  await new Promise((done, fail) => {
+    program.ended.then(() => fail(new Error(`the example ended: ${program.output}`)), fail);
+    program.child.stdout.on("data", (data) => {
+      program.output += data;
+      program.address = /http:\/\/\S+/.exec(program.output)?.[0];
+      if (program.address) done();
+    });
+  });
+  return program;
+}
+
+async function open(stage, program) {
+  const page = await stage.page();
+  await page.goto(program.address);
+  await hasFrame(page);
+  return page;
+}
+
+const isPaused = (page) => until(page, () => supple.model.frame.text.playing === false);
+const runsOn = (page, from) => until(page, (from) => supple.model.frame.text.step > from, from);
+const banner = (page) => page.getByRole("status", { name: "Program" });
+const reason = (page) => page.evaluate(() => supple.model.frame.text.break);
+const breaks = async (page) => {
+  await page.getByRole("tab", { name: "Settings" }).click();
+  return page.getByRole("group", { name: "Pause the program" });
+};
+
+async function pausesAndSteps(stage) {
+  const page = await open(stage, await start(stage));
+  assert.equal(await page.evaluate(() => supple.model.scene.source), "program");
+  await runsOn(page, await step(page));
+  await page.getByRole("button", { name: "Pause" }).click();
+  await isPaused(page);
+  const at = await step(page);
+  await page.getByRole("button", { name: "Step", exact: true }).click();
+  await until(page, (at) => supple.model.frame.text.step === at + 1, at);
+  await page.getByRole("img", { name: "3D view" }).focus();
+  await page.keyboard.press("ArrowRight");
+  await until(page, (at) => supple.model.frame.text.step === at + 2, at);
+  assert.equal(await page.evaluate(() => supple.model.frame.text.playing), false);
+  await page.keyboard.press("Space");
+  await runsOn(page, at + 2);
+  await until(page, () => supple.model.frame.text.playing);
+}
+
+async function showsAllStepsInThePlots(stage) {
+  const page = await open(stage, await start(stage));
+  await runsOn(page, (await step(page)) + 1000);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await isPaused(page);
+  const [frames, seen] = await page.evaluate(() => [supple.model.history.frames, supple.model.framesSeen]);
+  assert.ok(frames.length > seen, `${frames.length} steps in ${seen} frames`);
+  frames.forEach((frame, i) => assert.equal(frame, frames[0] + i));
+}
+
+async function answersInAPause(stage) {
+  const page = await open(stage, await start(stage));
+  await page.getByRole("button", { name: "Pause" }).click();
+  await isPaused(page);
+  const { name, vertices } = await page.evaluate(() => supple.client.ask({ do: "read", object: 1 }));
+  assert.deepEqual([name, vertices], ["ball", 642]);
+  const { stage: where } = await page.evaluate(() => supple.client.ask({ do: "explain", a: [0, 0], b: [2, 0] }));
+  assert.equal(typeof where, "string");
+  await page.keyboard.press("b");  // octrees
+  await until(page, () => supple.model.frame.octreeBoxes.size > 0);
+}
+
+async function breaksOnAContact(stage) {
+  const page = await open(stage, await start(stage));
+  const before = await camera(page);
+  const group = await breaks(page);
+  await group.getByLabel("First object").selectOption("floor");
+  await group.getByLabel("Second object").selectOption("ball");
+  await group.getByLabel("Two objects begin to touch").check();
+  await until(page, () => supple.model.frame.text.break);
+  const found = await reason(page);
+  assert.equal(found.text, "floor begins to touch ball");
+  assert.match(await banner(page).innerText(), /Paused in step [\d,]+: floor begins to touch ball/);
+  const pairs = await page.evaluate(() => Array.from(supple.model.frame.contacts).filter((_, i) => i % 8 === 0 || i % 8 === 2));
+  assert.ok(pairs.some((object, i) => i % 2 === 0 && object === 0 && pairs[i + 1] === 1), "the frame has this contact");
+  const { target } = await camera(page);
+  assert.notDeepEqual(target, before.target);
+  found.point.forEach((x, axis) => assert.ok(Math.abs(x - target[axis]) < 1e-3, "the camera looks at the contact"));
+  const at = await step(page);
+  await banner(page).getByRole("button", { name: "Continue" }).click();
+  await until(page, (at) => supple.model.frame.text.break?.text && supple.model.frame.text.step > at, at);
+  assert.equal((await reason(page)).text, "floor begins to touch ball");
+  await group.getByLabel("Two objects begin to touch").uncheck();
+  const last = await step(page);
+  await banner(page).getByRole("button", { name: "Continue" }).click();
+  await until(page, (last) => supple.model.frame.text.step > last && supple.model.frame.text.playing, last);
+  await until(page, () => document.querySelector(".banner").hidden);
+}
+
+async function breaksOnNumbers(stage) {
+  const page = await open(stage, await start(stage));
+  const group = await breaks(page);
+  const count = group.getByLabel("More contacts than");
+  await count.fill("-3");
+  await count.press("Enter");
+  await group.getByText(/“More contacts than” is -3; it must be a whole number/).waitFor();
+  await count.fill("100");
+  await count.press("Enter");
+  await until(page, () => supple.model.frame.text.break);
+  assert.match((await reason(page)).text, /^there are \d+ contacts$/);
+  await count.fill("");
+  await count.press("Enter");
+  const depth = group.getByLabel("A vertex deeper in a solid than");
+  await depth.fill("0.2");
+  await depth.press("Enter");
+  await banner(page).getByRole("button", { name: "Continue" }).click();
+  await until(page, () => supple.model.frame.text.break?.event === "depth_above");
+  assert.match(await banner(page).innerText(), /a vertex of .* is 0\.\d+ deep in /);
+}
+
+async function goesOnWithoutThePage(stage) {
+  const program = await start(stage);
+  const page = await open(stage, program);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await isPaused(page);
+  const at = await step(page);
+  await page.close();
+  const next = await open(stage, program);
+  await until(next, () => supple.model.frame.text.playing);
+  await runsOn(next, at);
+}
+
+async function saysThatTheProgramEnds(stage) {
+  const program = await start(stage, 500);
+  const page = await open(stage, program);
+  await isPaused(page);
+  await until(page, () => supple.model.frame.text.step === 499);
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.getByRole("alertdialog", { name: "The program has ended" }).waitFor();
+  assert.equal(await step(page), 499, "the page keeps the last frame");
+  assert.equal((await program.ended).code, 0);
+  assert.match(program.output, /500 steps/);
+}
+
+async function saysThatTheProgramWasKilled(stage) {
+  const program = await start(stage);
+  const page = await open(stage, program);
+  await program.stop("SIGKILL");
+  await page.getByRole("alertdialog", { name: "Connection lost" }).waitFor();
+  assert.ok((await page.evaluate(() => supple.model.objects[1].positions)) !== null);
+}
+
+/** The answer of a program that hangs is written by the test. */
+async function saysThatTheProgramHangs(stage) {
+  const program = await start(stage);
+  const page = await stage.page();
+  await page.routeWebSocket(/\/session/, (socket) => {
+    const server = socket.connectToServer();
+    server.onMessage((message) => socket.send(message));
+    socket.onMessage((text) => {
+      const command = JSON.parse(text);
+      if (command.do !== "program") return server.send(text);
+      socket.send(textMessage(3, { id: command.id, steps: 41, step: 40, runs: true, seconds_since_step: 12.4 }));
+    });
+  });
+  await page.goto(program.address);
+  await hasFrame(page);
+  await banner(page).getByText("The last step, 40, ended 12 s ago. The program works on the next one.").waitFor();
+}
+
+export const tests = [
+  ["pauses, steps and continues a program", pausesAndSteps],
+  ["has the statistics of steps without a frame", showsAllStepsInThePlots],
+  ["answers questions in a pause", answersInAPause],
+  ["breaks on the contact of two named objects", breaksOnAContact],
+  ["breaks on numbers, and refuses wrong ones", breaksOnNumbers],
+  ["a program goes on when its page is closed", goesOnWithoutThePage],
+  ["says that a program has ended", saysThatTheProgramEnds],
+  ["says that a program was killed", saysThatTheProgramWasKilled],
+  ["says that a program hangs", saysThatTheProgramHangs],
+];
