@@ -65,6 +65,19 @@ class WithoutGil {
 /// process made by fork has none of the threads of its parent.
 class CallGuard {
  public:
+  /// While it lives, this thread runs a function that the scene calls. That need not be the thread that
+  /// called the scene: while a program waits, the viewer reads its scene.
+  class Callback {
+   public:
+    Callback() : outer_(std::exchange(is_active_, true)) {}
+    ~Callback() { is_active_ = outer_; }
+    Callback(const Callback&) = delete;
+    static bool is_active() { return is_active_; }
+
+   private:
+    const bool outer_;
+    static inline thread_local bool is_active_ = false;
+  };
   /// Waits without the GIL for other calls of the object. Throws `Error` in a process made by fork, and when
   /// a function of the user calls the object that is calling it.
   class Alone {
@@ -112,16 +125,17 @@ class CallGuard {
   /// The same for names and counts, which functions that the object calls may read.
   class Reading : public Together {
    public:
-    explicit Reading(CallGuard& guard) : Together(guard, guard.caller_ == std::this_thread::get_id()) {}
+    explicit Reading(CallGuard& guard) : Together(guard, guard.is_own_call()) {}
   };
 
  private:
+  bool is_own_call() const { return caller_ == std::this_thread::get_id() || Callback::is_active(); }
   void check() const {
     if (getpid() != process_)
       throw Error(
           "the scene was made before fork, and its threads are not in this process; make scenes in the "
           "new process, or use multiprocessing with the start method 'spawn'");
-    if (caller_ == std::this_thread::get_id())
+    if (is_own_call())
       throw Error("a function that the scene calls cannot call the scene; collect what it needs before");
   }
 

@@ -73,6 +73,7 @@ PairFilter filter_of(nb::object function) {
     delete object;
   });
   return [shared](ObjectId a, ObjectId b) {
+    const CallGuard::Callback callback;
     nb::gil_scoped_acquire acquire;
     const nb::object answer = (*shared)(a, b);
     bool accepts = false;

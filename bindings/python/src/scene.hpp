@@ -63,6 +63,7 @@ class SceneCore {
 
   Scene& scene() { return state_->scene; }
   SceneState& state() { return *state_; }
+  std::shared_ptr<SceneState> shared_state() { return state_; }
   CallGuard& guard() { return state_->guard; }
   /// The object no longer reads an array in place.
   void forget_shared(ObjectId id) { state_->shared.erase(id); }

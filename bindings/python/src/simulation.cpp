@@ -1,5 +1,3 @@
-#include "supple/simulation.hpp"
-
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
@@ -11,6 +9,7 @@
 #include "options.hpp"
 #include "records.hpp"
 #include "scene.hpp"
+#include "simulation.hpp"
 #include "supple/simulation_descriptions.hpp"
 
 namespace supple::python {
@@ -19,28 +18,7 @@ namespace {
 using Alone = CallGuard::Alone;
 using Points = Matrix<double, 3>;
 
-struct SimulationState {
-  explicit SimulationState(const SimulationOptions& options) : simulation(options) {}
-
-  Simulation simulation;
-  CallGuard guard;
-  LastLists last;
-};
-
-/// The simulation of Python.
-class SimulationCore {
- public:
-  explicit SimulationCore(const nb::dict& keywords);
-
-  Simulation& simulation() { return state_->simulation; }
-  CallGuard& guard() { return state_->guard; }
-  template <class Advance>
-  std::unique_ptr<Result> run(const nb::dict& keywords, const char* where, Stop* stop,
-                              const Advance& advance);
-
- private:
-  std::shared_ptr<SimulationState> state_;
-};
+}  // namespace
 
 SimulationCore::SimulationCore(const nb::dict& keywords) {
   SimulationOptions options;
@@ -82,6 +60,8 @@ std::unique_ptr<Result> SimulationCore::run(const nb::dict& keywords, const char
   result->lists = state_->last.begin(state_);
   return result;
 }
+
+namespace {
 
 MassSpringMotion springs_of(const nb::dict& keywords,
                             const std::optional<List<std::uint32_t>>& fixed_vertices,

@@ -7,6 +7,7 @@ import os
 from typing import Any, NamedTuple
 
 from . import _core
+from ._attach import View, attach
 from ._broad_phase import BroadPhase, enclosing_boxes
 from ._check import CheckReport, FrameCheck, check
 from ._core import Error, MotionError, Stop
@@ -144,7 +145,9 @@ __all__ = [
     "Stop",
     "Table",
     "VerifyReport",
+    "View",
     "WrongAnswer",
+    "attach",
     "check",
     "compute_topology",
     "dtypes",
