@@ -128,9 +128,8 @@ int run_detect(const DetectOptions& given, Ranks& ranks) {
       Frame frame{number, is_start ? objects->detect(request) : objects->step(request)};
       if (frame.result.stopped) break;
       if (continuous) frame.turned = objects->turned();
-      if (options.verify && !(is_start && continuous))
-        frame.verify = objects->scene().verify({interruption.token()});
-      if (interruption.token().stop_requested() && frame.verify) break;
+      if (options.verify && !(is_start && continuous)) frame.verify = objects->verify({interruption.token()});
+      if (frame.verify && frame.verify->stopped) break;
       const auto hold = interruption.hold();
       ranks.together([&] { reports->add(frame); });
       done = number - first + 1;

@@ -150,8 +150,8 @@ bool Run::add_frame(Interruption& interruption, const DetectResult& result) {
   frame.simulated = {objects_.time(), number == 0 ? 0 : objects_.motion_seconds()};
   if (is_continuous_ && number > 0) frame.turned = objects_.turned();
   if (options_.verify && !(number == 0 && is_continuous_))
-    frame.verify = objects_.scene().verify({interruption.token()});
-  if (frame.verify && interruption.token().stop_requested()) return false;
+    frame.verify = objects_.verify({interruption.token()});
+  if (frame.verify && frame.verify->stopped) return false;
   const auto hold = interruption.hold();
   ranks_.together([&] {
     recorder_.add(result);

@@ -23,6 +23,7 @@ class DistributedObjects : public MovingObjects {
 
   const DetectResult& detect(const DetectRequest& request) override;
   const DetectResult& step(const DetectRequest& request) override;
+  VerifyReport verify(const CallLimits& limits) override { return scene_.verify(limits); }
   std::vector<ObjectId> turned() override;
   std::vector<BodyEnergy> energies() override;
   std::optional<std::string> warning_of_long_steps() override;

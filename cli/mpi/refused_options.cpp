@@ -15,7 +15,6 @@ void refuse_options(const DetectionOptions& options, const Input& input) {
     bool is_given;
     const char* what;
   } refused[] = {
-      {options.verify, "--verify"},
       {options.limits.max_contacts != RunLimits{}.max_contacts, "--max-contacts"},
       {options.json_content.node_pairs.has_value(), "--node-pairs"},
       {scene.bounding_volume != BoundingVolume::aabb, "a bounding volume other than aabb"},

@@ -175,7 +175,7 @@ void DistributedScene::Implementation::load(const std::string& path) {
     for (const auto& [id, of_object] : parts) {
       const std::vector<std::span<const std::byte>> views(of_object.begin(), of_object.end());
       try {
-        loaded.emplace(id, HomeObject::read(id, views, options.cluster_triangles, additions_++));
+        loaded.emplace(id, HomeObject::of(id, read_object(views), options.cluster_triangles, additions_++));
       } catch (const Error& error) {
         is_unusable(std::string("is damaged: ") + error.what());
       }
@@ -202,6 +202,7 @@ void DistributedScene::Implementation::load(const std::string& path) {
     }
   });
   homes_ = std::move(loaded);
+  has_detected_ = false;
   step_ = head.step;
   has_changed_ = true;
 }

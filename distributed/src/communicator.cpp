@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "core/error.hpp"
 
@@ -116,6 +117,36 @@ void Communicator::exchange(Outbox& outbox, Inbox& inbox) {
   }
   std::sort(inbox.messages_.begin(), inbox.messages_.end(),
             [](const auto& p, const auto& q) { return p.from < q.from; });
+}
+
+void Communicator::share(const std::vector<std::byte>& own, Inbox& inbox) const {
+  std::vector<std::uint64_t> sizes(static_cast<std::size_t>(size_));
+  const std::uint64_t size = own.size();
+  MPI_Allgather(&size, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, handle_);
+  std::vector<int> counts, firsts;  // in words
+  std::size_t words = 0;
+  for (const std::uint64_t of_rank : sizes) {
+    counts.push_back(static_cast<int>((of_rank + word - 1) / word));
+    firsts.push_back(static_cast<int>(words));
+    words += static_cast<std::size_t>(counts.back());
+  }
+  inbox = {};
+  if (words == 0) return;
+  std::vector<std::byte> sent;
+  together([&] {
+    if (words > std::numeric_limits<int>::max()) fail("the ranks share more than 16 GiB");
+    sent = own;
+    sent.resize(word * static_cast<std::size_t>(counts[static_cast<std::size_t>(rank_)]));
+    inbox.received_.resize(word * words);
+  });
+  MPI_Allgatherv(sent.data(), static_cast<int>(sent.size() / word), MPI_UINT64_T, inbox.received_.data(),
+                 counts.data(), firsts.data(), MPI_UINT64_T, handle_);
+  for (std::size_t rank = 0; rank < sizes.size(); ++rank) {
+    if (sizes[rank] == 0) continue;
+    inbox.messages_.push_back(
+        {static_cast<int>(rank),
+         std::span(inbox.received_).subspan(word * static_cast<std::size_t>(firsts[rank]), sizes[rank])});
+  }
 }
 
 void Communicator::release() {

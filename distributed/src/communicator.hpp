@@ -77,7 +77,7 @@ class Communicator {
   /// Collective: runs `work` on each rank. When it throws on any of them, all throw the error of the lowest.
   /// `work` may call it again, and so end on all ranks where it fails on one.
   template <class Work>
-  void together(const Work& work) {
+  void together(const Work& work) const {
     std::string error;
     bool failed = false;
     try {
@@ -94,6 +94,9 @@ class Communicator {
   /// communicate. The messages in `outbox` are undefined afterwards, and those in `inbox` are valid until its
   /// next exchange.
   void exchange(Outbox& outbox, Inbox& inbox);
+  /// Collective: all ranks get the messages of all, up to 16 GiB together. The messages are valid until
+  /// `inbox` changes.
+  void share(const std::vector<std::byte>& own, Inbox& inbox) const;
   /// Gives the memory of messages back.
   void release();
   // Collective: each number becomes the sum or the largest of those of all ranks.

@@ -13,8 +13,8 @@
 #include "answers/untested.hpp"
 #include "communicator.hpp"
 #include "found_lists.hpp"
-#include "home_object.hpp"
-#include "local_world.hpp"
+#include "objects/home_object.hpp"
+#include "objects/local_world.hpp"
 #include "regions.hpp"
 #include "scene/pair_cache.hpp"
 #include "supple/broad_phase.hpp"
@@ -51,10 +51,19 @@ class DistributedScene::Implementation {
            const ObjectPart* part, const ObjectOptions& object_options);
   void remove(ObjectId id);
   HomeObject& home(ObjectId id, const char* call);
+  /// To change what the next search finds.
+  HomeObject& changing(ObjectId id, const char* call) {
+    has_detected_ = false;
+    return home(id, call);
+  }
+  void set_filter(PairFilter given) {
+    has_detected_ = false;
+    filter_ = std::move(given);
+  }
   /// Changes what the ranks with clusters of the object know of it: `change(object)`.
   template <class Change>
   void change(ObjectId id, const char* call, const Change& change) {
-    HomeObject& object = home(id, call);
+    HomeObject& object = changing(id, call);
     change(object);
     object.addition = additions_++;
     has_changed_ = true;
@@ -68,6 +77,7 @@ class DistributedScene::Implementation {
     });
   }
   const DetectResult& detect(const DetectRequest& request);
+  VerifyReport verify(const CallLimits& limits);
   std::optional<ContinuousContact> earliest_impact();
   SafeStep collision_free_step(const StepOptions& step);
   std::vector<ProximityPair> distances(double max_distance);
@@ -79,7 +89,6 @@ class DistributedScene::Implementation {
 
   Communicator ranks;
   const DistributedOptions options;
-  PairFilter filter;
   DistributedStats stats;
 
  private:
@@ -89,11 +98,15 @@ class DistributedScene::Implementation {
   void fetch_clusters();
   void agree_on_objects();
   void divide_space();
+  /// What concerns most ranks goes to all of them in one call, not in a message to each.
+  bool is_wide(std::span<const int> of) const {
+    return 2 * of.size() > static_cast<std::size_t>(ranks.size());
+  }
   void send_units();
   void send_unit(const Unit& unit, const std::vector<int>& homes);
   bool accepts(const Unit& a, const Unit& b);
   bool is_tested(ObjectId a, ObjectId b) const;
-  void read_units();
+  void read_units(const Inbox& wide);
   void find_object_pairs();
   void find_cluster_pairs();
   void request_clusters();
@@ -105,7 +118,7 @@ class DistributedScene::Implementation {
   void send_lists();
   void release_messages();
 
-  ObjectId user(ObjectId local) const { return local_.user_object(local.index); }
+  ObjectId user(ObjectId local) const { return local_.object(local); }
   Vec3d lower_corner(ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
                      bool on_the_way);
   template <class Record>
@@ -116,18 +129,14 @@ class DistributedScene::Implementation {
   void send_pair(PairList list, ObjectId p, ObjectId q);
   struct PointQuery;
   struct Candidate;
-  std::vector<PointQuery> query_points(std::span<const Vec3d> points, const QueryFilter& seen);
-  void need_clusters_near(std::vector<PointQuery>& points, const QueryFilter& seen);
+  class SeenClusters;
+  std::vector<PointQuery> query_points(std::span<const Vec3d> points, const SeenClusters& seen);
+  void need_clusters_near(std::vector<PointQuery>& points, const SeenClusters& seen);
   void send_nearest(std::span<const PointQuery> points, const ClosestOptions& closest_options);
   static ClosestPoint nearest_of(std::span<const Candidate> candidates, const Vec3d& point);
   template <class Record, class Add>
   void send_groups(std::span<const ContactGroup> groups, std::span<const Record> records, PairList events,
                    const Add& add);
-  Contact named(Contact contact) const;
-  ContinuousContact named(ContinuousContact contact) const;
-  ProximityPair named(ProximityPair pair) const;
-  std::array<std::uint32_t, 2> named(ObjectId object, FeatureKind kind,
-                                     const std::array<std::uint32_t, 2>& element) const;
   void send_results();
   void send_penetrations(const DetectResult& found);
   bool has_pair_to_test(ContactKinds kind);
@@ -138,6 +147,7 @@ class DistributedScene::Implementation {
   void count_messages();
 
   std::map<ObjectId, HomeObject> homes_;
+  PairFilter filter_;
   std::uint32_t additions_ = 0;
   bool has_changed_ = true;  // objects were added or removed on this rank
   bool has_parts_ = false;   // on any rank
@@ -147,6 +157,7 @@ class DistributedScene::Implementation {
   Detection detection_;
   StepSearch step_search_;
   Outbox outbox_;
+  std::vector<std::byte> wide_units_;  // as messages to all ranks
   Inbox inbox_;
   // What a step computes.
   Question question_;
@@ -164,6 +175,7 @@ class DistributedScene::Implementation {
   std::map<int, FoundLists> outgoing_;        // by rank
   std::array<PairCache, pair_lists> events_;  // by `PairList`
   DetectResult result_;
+  bool has_detected_ = false;  // the last call on this rank was a whole `detect`
   std::vector<UntestedKind> untested_;
   std::uint64_t step_ = 0;
 };

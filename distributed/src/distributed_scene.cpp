@@ -64,10 +64,11 @@ void DistributedScene::Implementation::add(ObjectId id, const PositionsView& pos
   }
   homes_.emplace(id, std::move(object));
   has_changed_ = true;
+  has_detected_ = false;
 }
 
 void DistributedScene::Implementation::remove(ObjectId id) {
-  home(id, "remove");
+  changing(id, "remove");
   homes_.erase(id);
   has_changed_ = true;
 }
@@ -170,6 +171,7 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   result_.stats.total_seconds = total.lap();
   gather_step_stats();
   ++step_;
+  has_detected_ = true;
   return result_;
 }
 
@@ -191,13 +193,16 @@ void DistributedScene::remove(ObjectId id) {
   implementation_->remove(id);
 }
 void DistributedScene::set_positions(ObjectId id, PositionsView positions) {
-  implementation_->home(id, "set_positions").set_positions(positions);
+  implementation_->changing(id, "set_positions").set_positions(positions);
 }
 void DistributedScene::set_motion(ObjectId id, PositionsView from, PositionsView to) {
-  implementation_->home(id, "set_motion").set_motion(from, to);
+  implementation_->changing(id, "set_motion").set_motion(from, to);
 }
 const DetectResult& DistributedScene::detect(const DetectRequest& request) {
   return implementation_->detect(request);
+}
+VerifyReport DistributedScene::verify(const CallLimits& limits) {
+  return implementation_->verify(limits);
 }
 void DistributedScene::set_static(ObjectId id, bool is_static) {
   implementation_->change_option(id, "set_static", &ObjectOptions::is_static, is_static);
@@ -223,7 +228,7 @@ void DistributedScene::set_self_collision(ObjectId id, bool enabled) {
   implementation_->change_option(id, "set_self_collision", &ObjectOptions::self_collision, enabled);
 }
 void DistributedScene::set_pair_filter(PairFilter filter) {
-  implementation_->filter = std::move(filter);
+  implementation_->set_filter(std::move(filter));
 }
 std::optional<ContinuousContact> DistributedScene::earliest_impact() {
   return implementation_->earliest_impact();

@@ -91,6 +91,7 @@ void DistributedScene::Implementation::agree_on_objects() {
       Writer to = outbox_.to(rank);
       to.put(id);
       to.put(entry.homes.front());
+      to.put(is_wide(entry.homes));
       to.put_all(rank == entry.homes.front() ? entry.homes : std::vector<int>());
     }
   }
@@ -100,6 +101,7 @@ void DistributedScene::Implementation::agree_on_objects() {
     while (!from.is_done()) {
       HomeObject& object = homes_.at(from.get<ObjectId>());
       object.first_home = from.get<int>();
+      object.is_wide = from.get<bool>();
       object.homes = from.get_all<int>();
       has_parts_ = has_parts_ || object.is_part();
     }
@@ -127,16 +129,19 @@ void DistributedScene::Implementation::divide_space() {
 
 void DistributedScene::Implementation::send_unit(const Unit& unit, const std::vector<int>& homes) {
   if (unit.box.empty()) return;
-  for (const int rank : regions_.ranks_of(unit.box)) {
-    Writer to = outbox_.to(rank);
+  const auto put = [&](Writer to) {
     to.put(unit);
     to.put_all(homes);
-  }
+  };
+  const std::span<const int> meets = regions_.ranks_of(unit.box);
+  if (is_wide(meets)) return put(Writer(wide_units_));
+  for (const int rank : meets) put(outbox_.to(rank));
 }
 
 /// Sends the boxes of clusters, and those of whole objects from their first homes, grown for the search.
 void DistributedScene::Implementation::send_units() {
   outbox_.clear();
+  wide_units_.clear();
   stats.clusters = 0;
   for (auto& [id, object] : homes_) {
     const ObjectOptions& of = object.options;
@@ -165,28 +170,31 @@ void DistributedScene::Implementation::send_units() {
   }
 }
 
-void DistributedScene::Implementation::read_units() {
+void DistributedScene::Implementation::read_units(const Inbox& wide) {
   objects_.clear();
   clusters_.clear();
   homes_of_.clear();
-  inbox_.for_each([&](Reader& from, int) {
-    while (!from.is_done()) {
-      const auto unit = from.get<Unit>();
-      std::vector<int> homes = from.get_all<int>();
-      (unit.name.cluster == all_clusters ? objects_ : clusters_).push_back(unit);
-      if (unit.name.cluster == all_clusters) homes_of_[unit.name.object] = std::move(homes);
-    }
-  });
+  for (const Inbox* const units : {&std::as_const(inbox_), &wide}) {
+    units->for_each([&](Reader& from, int) {
+      while (!from.is_done()) {
+        const auto unit = from.get<Unit>();
+        std::vector<int> homes = from.get_all<int>();
+        if (!region_.meets(unit.box)) continue;
+        (unit.name.cluster == all_clusters ? objects_ : clusters_).push_back(unit);
+        if (unit.name.cluster == all_clusters) homes_of_[unit.name.object] = std::move(homes);
+      }
+    });
+  }
   for (auto* const units : {&objects_, &clusters_})
     std::sort(units->begin(), units->end(), [](const Unit& p, const Unit& q) { return p.name < q.name; });
 }
 
 /// Whether the pair filter lets the objects through; it is asked once for each pair.
 bool DistributedScene::Implementation::accepts(const Unit& a, const Unit& b) {
-  if (!filter || a.name.object == b.name.object) return true;
+  if (!filter_ || a.name.object == b.name.object) return true;
   const auto [p, q] = std::minmax(a.name.object, b.name.object);
   const auto [known, is_new] = filtered_.try_emplace({p, q}, false);
-  if (is_new) known->second = filter(p, q);
+  if (is_new) known->second = filter_(p, q);
   return known->second;
 }
 
@@ -325,6 +333,8 @@ bool DistributedScene::Implementation::is_tested(ObjectId a, ObjectId b) const {
 
 /// Brings the units of this step to the ranks whose regions they meet.
 void DistributedScene::Implementation::exchange_units() {
+  has_detected_ = false;
+  Inbox wide;
   ranks.bytes_sent = ranks.messages_sent = 0;
   agree_on_objects();
   ranks.together([&] {
@@ -332,23 +342,30 @@ void DistributedScene::Implementation::exchange_units() {
   });
   if (has_parts_) {
     outbox_.clear();
+    wide_units_.clear();
     for (const auto& [id, object] : homes_) {
       if (object.first_home == ranks.rank()) continue;
-      outbox_.to(object.first_home).put(id);
-      outbox_.to(object.first_home).put(object.box);
+      Writer to = object.is_wide ? Writer(wide_units_) : outbox_.to(object.first_home);
+      to.put(id);
+      to.put(object.box);
     }
     ranks.exchange(outbox_, inbox_);
-    inbox_.for_each([&](Reader& from, int) {
-      while (!from.is_done()) {
-        HomeObject& object = homes_.at(from.get<ObjectId>());
-        extend(object.box, from.get<Aabb>());
-      }
-    });
+    ranks.share(wide_units_, wide);
+    for (const Inbox* const boxes : {&std::as_const(inbox_), &std::as_const(wide)}) {
+      boxes->for_each([&](Reader& from, int) {
+        while (!from.is_done()) {
+          const auto home = homes_.find(from.get<ObjectId>());
+          const auto box = from.get<Aabb>();
+          if (home != homes_.end() && home->second.first_home == ranks.rank()) extend(home->second.box, box);
+        }
+      });
+    }
   }
   divide_space();
   ranks.together([&] { send_units(); });
   ranks.exchange(outbox_, inbox_);
-  ranks.together([&] { read_units(); });
+  ranks.share(wide_units_, wide);
+  ranks.together([&] { read_units(wide); });
 }
 
 /// Brings the clusters that this rank needs into its world.

@@ -7,9 +7,13 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/sort_once.hpp"
@@ -18,6 +22,7 @@
 #include "geometry/vector.hpp"
 #include "queries/check_queries.hpp"
 #include "queries/queries.hpp"
+#include "renumbered.hpp"
 
 namespace supple {
 
@@ -35,6 +40,10 @@ struct DistributedScene::Implementation::Candidate {
 };
 
 namespace {
+
+namespace geometry = boost::geometry;
+using TreePoint = geometry::model::point<double, 3, geometry::cs::cartesian>;
+using TreeBox = geometry::model::box<TreePoint>;
 
 /// More than what sums and roots of doubles lose.
 constexpr double slack = 1 + 0x1p-40;
@@ -61,20 +70,72 @@ Aabb box_of_ball(const Vec3d& p, double radius) {
   return box;
 }
 
-bool sees(const QueryFilter& filter, const Unit& unit) {
-  return (!filter.object || *filter.object == unit.name.object) && (unit.group & filter.mask) != 0;
+TreePoint tree_point(const Vec3d& p) {
+  return {p.x, p.y, p.z};
+}
+
+/// Infinite bounds, with which the tree cannot compute, become larger than any other float.
+TreeBox tree_box(const Aabb& box) {
+  const auto corner = [](const Vec3f& p) {
+    const auto finite = [](float x) { return std::clamp(double{x}, -1e39, 1e39); };
+    return TreePoint(finite(p.x), finite(p.y), finite(p.z));
+  };
+  return {corner(box.min), corner(box.max)};
 }
 
 }  // namespace
 
+/// The clusters that a filter lets through, in a tree of their boxes.
+class DistributedScene::Implementation::SeenClusters {
+ public:
+  SeenClusters(std::span<const Unit> clusters, const QueryFilter& filter) : clusters_(clusters) {
+    std::vector<Entry> entries;
+    for (std::uint32_t i = 0; i < clusters.size(); ++i) {
+      const Unit& unit = clusters[i];
+      if (unit.box.empty() || (unit.group & filter.mask) == 0) continue;
+      if (filter.object && *filter.object != unit.name.object) continue;
+      entries.push_back({tree_box(unit.box), i});
+      extend(box, unit.box);
+    }
+    tree_ = Tree(entries);
+  }
+
+  /// A distance from the point, at most `radius`, within which a triangle is.
+  double bound(const Vec3d& point, double radius) const {
+    // By ascending distance of the boxes.
+    for (auto near =
+             tree_.qbegin(geometry::index::nearest(tree_point(point), static_cast<unsigned>(tree_.size())));
+         near != tree_.qend(); ++near) {
+      const Aabb& of = clusters_[near->second].box;
+      if (!is_near(point, radius, of)) break;
+      radius = std::min(radius, farthest_distance(point, of));
+    }
+    return radius;
+  }
+  /// Calls `visit(cluster)` for each one that the ball meets.
+  template <class Visit>
+  void for_each_near(const Vec3d& point, double radius, const Visit& visit) const {
+    const TreeBox ball = tree_box(box_of_ball(point, radius));
+    for (auto near = tree_.qbegin(geometry::index::intersects(ball)); near != tree_.qend(); ++near) {
+      if (is_near(point, radius, clusters_[near->second].box)) visit(near->second);
+    }
+  }
+
+  Aabb box;  ///< of all
+
+ private:
+  using Entry = std::pair<TreeBox, std::uint32_t>;
+  using Tree = geometry::index::rtree<Entry, geometry::index::rstar<8>>;
+
+  std::span<const Unit> clusters_;
+  Tree tree_;
+};
+
 /// Collective: gives each point to the rank whose region contains it, with a radius in which a triangle is.
 /// Returns the points whose balls meet the region of this rank.
 std::vector<DistributedScene::Implementation::PointQuery> DistributedScene::Implementation::query_points(
-    std::span<const Vec3d> points, const QueryFilter& seen) {
-  Aabb all;
-  for (const Unit& unit : clusters_) {
-    if (sees(seen, unit)) extend(all, unit.box);
-  }
+    std::span<const Vec3d> points, const SeenClusters& seen) {
+  Aabb all = seen.box;
   std::vector<double> bounds;
   for (int axis = 0; axis < 3; ++axis) {
     bounds.push_back(-double{all.min[axis]});
@@ -104,9 +165,7 @@ std::vector<DistributedScene::Implementation::PointQuery> DistributedScene::Impl
   outbox_.clear();
   ranks.together([&] {
     read_points([&](PointQuery query) {
-      for (const Unit& unit : clusters_) {
-        if (sees(seen, unit)) query.radius = std::min(query.radius, farthest_distance(query.point, unit.box));
-      }
+      query.radius = seen.bound(query.point, query.radius);
       for (const int rank : regions_.ranks_of(box_of_ball(query.point, query.radius)))
         outbox_.to(rank).put(query);
     });
@@ -119,20 +178,19 @@ std::vector<DistributedScene::Implementation::PointQuery> DistributedScene::Impl
 
 /// Needs the clusters in the balls of the points, and forgets points without one here.
 void DistributedScene::Implementation::need_clusters_near(std::vector<PointQuery>& points,
-                                                          const QueryFilter& seen) {
+                                                          const SeenClusters& seen) {
   needed_.clear();
   tested_.clear();
   std::vector<double> work(clusters_.size(), 0);
   std::erase_if(points, [&](const PointQuery& query) {
     const Aabb ball = box_of_ball(query.point, query.radius);
     bool has_any = false;
-    for (std::size_t i = 0; i < clusters_.size(); ++i) {
-      if (!sees(seen, clusters_[i]) || !is_near(query.point, query.radius, clusters_[i].box)) continue;
+    seen.for_each_near(query.point, query.radius, [&](std::uint32_t i) {
       const Aabb shared = shared_box(ball, clusters_[i].box);
-      if (!region_.contains(Vec3d{shared.min.x, shared.min.y, shared.min.z})) continue;
+      if (!region_.contains(Vec3d{shared.min.x, shared.min.y, shared.min.z})) return;
       work[i] += 1;
       has_any = true;
-    }
+    });
     return !has_any;
   });
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
@@ -160,7 +218,7 @@ void DistributedScene::Implementation::send_nearest(std::span<const PointQuery> 
     const Triangle corners = object.octree().user_triangle(found[i]->triangle);
     for (std::size_t c = 0; c < 3; ++c) candidate.corners[c] = object.placement().position(corners[c]);
     candidate.closest.object = user(found[i]->object);
-    candidate.closest.triangle = local_.user_face(found[i]->object.index, found[i]->triangle);
+    candidate.closest.triangle = local_.face(found[i]->object, found[i]->triangle);
     outbox_.to(points[i].rank).put(candidate);
   }
 }
@@ -182,8 +240,10 @@ void DistributedScene::Implementation::closest(std::span<const Vec3d> points,
   if (seen.object && !ranks.any(homes_.contains(*seen.object)))
     fail("closest: object " + std::to_string(seen.object->index) + " (generation " +
          std::to_string(seen.object->generation) + ") is not in the scene");
-  std::vector<PointQuery> queries = query_points(points, seen);
-  ranks.together([&] { need_clusters_near(queries, seen); });
+  std::optional<SeenClusters> clusters;
+  ranks.together([&] { clusters.emplace(clusters_, seen); });
+  std::vector<PointQuery> queries = query_points(points, *clusters);
+  ranks.together([&] { need_clusters_near(queries, *clusters); });
   fetch_clusters();
   ranks.together([&] { send_nearest(queries, closest_options); });
   ranks.exchange(outbox_, inbox_);
@@ -235,7 +295,7 @@ std::vector<ProximityPair> DistributedScene::Implementation::distances(double ma
   ranks.together([&] {
     clear_lists();
     for (const ProximityPair& pair : Queries(world()).distances(max_distance, {})) {
-      const ProximityPair found = named(pair);
+      const ProximityPair found = renumbered(pair, local_);
       lists_of(found.object_a).proximity_pairs.push_back(found);
     }
   });

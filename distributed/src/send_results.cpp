@@ -10,6 +10,7 @@
 
 #include "answers/object_pairs.hpp"
 #include "distributed_implementation.hpp"
+#include "renumbered.hpp"
 
 namespace supple {
 namespace {
@@ -103,41 +104,6 @@ void DistributedScene::Implementation::send_pair(PairList list, ObjectId p, Obje
   if (a != b) outgoing_[rank_of_pair(a, b)].pairs[static_cast<std::size_t>(list)].push_back({a, b});
 }
 
-Contact DistributedScene::Implementation::named(Contact contact) const {
-  contact.triangle_a = local_.user_face(contact.object_a.index, contact.triangle_a);
-  contact.triangle_b = local_.user_face(contact.object_b.index, contact.triangle_b);
-  contact.object_a = user(contact.object_a);
-  contact.object_b = user(contact.object_b);
-  return contact;
-}
-
-std::array<std::uint32_t, 2> DistributedScene::Implementation::named(
-    ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element) const {
-  std::array<std::uint32_t, 2> found = element;
-  for (std::uint32_t& number : found) {
-    number = kind == FeatureKind::face ? local_.user_face(object.index, number)
-                                       : local_.user_vertex(object.index, number);
-  }
-  return found;
-}
-
-ContinuousContact DistributedScene::Implementation::named(ContinuousContact contact) const {
-  const auto [kind_a, kind_b] = feature_kinds(contact.kind);
-  contact.element_a = named(contact.object_a, kind_a, contact.element_a);
-  contact.element_b = named(contact.object_b, kind_b, contact.element_b);
-  contact.object_a = user(contact.object_a);
-  contact.object_b = user(contact.object_b);
-  return contact;
-}
-
-ProximityPair DistributedScene::Implementation::named(ProximityPair pair) const {
-  pair.element_a = named(pair.object_a, pair.kind_a, pair.element_a);
-  pair.element_b = named(pair.object_b, pair.kind_b, pair.element_b);
-  pair.object_a = user(pair.object_a);
-  pair.object_b = user(pair.object_b);
-  return pair;
-}
-
 /// Adds the records of each group that this rank reports; `add(record, lists)` adds one.
 template <class Record, class Add>
 void DistributedScene::Implementation::send_groups(std::span<const ContactGroup> groups,
@@ -149,7 +115,7 @@ void DistributedScene::Implementation::send_groups(std::span<const ContactGroup>
     for (const Record& record : records.subspan(group.first_contact, group.contact_count)) {
       if (!is_sure && !is_mine(record)) continue;
       if (lists == nullptr) lists = &lists_of(user(group.a));
-      add(named(record), *lists);
+      add(renumbered(record, local_), *lists);
     }
     if (lists != nullptr) send_pair(events, user(group.a), user(group.b));
   }
@@ -158,7 +124,7 @@ void DistributedScene::Implementation::send_groups(std::span<const ContactGroup>
 void DistributedScene::Implementation::send_penetrations(const DetectResult& found) {
   const auto append = [&](std::span<const std::uint32_t> vertices, ObjectId object,
                           std::vector<std::uint32_t>& to) {
-    for (const std::uint32_t v : vertices) to.push_back(local_.user_vertex(object.index, v));
+    for (const std::uint32_t v : vertices) to.push_back(local_.vertex(object, v));
   };
   const auto next = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
   for (const PenetrationGroup& group : found.penetration_groups) {
@@ -166,20 +132,13 @@ void DistributedScene::Implementation::send_penetrations(const DetectResult& fou
     FoundLists& lists = lists_of(a);
     lists.penetration_groups.push_back({a, b, next(lists.penetrations), group.penetration_count,
                                         next(lists.vertices_on_surface), group.on_surface_count});
-    for (Penetration depth : found.penetrations_of(group)) {
-      depth.vertex = local_.user_vertex(group.a.index, depth.vertex);
-      depth.triangle = local_.user_face(group.b.index, depth.triangle);
-      depth.object_a = a;
-      depth.object_b = b;
-      lists.penetrations.push_back(depth);
-    }
+    for (const Penetration& depth : found.penetrations_of(group))
+      lists.penetrations.push_back(renumbered(depth, local_));
     append(found.vertices_on_surface_of(group), group.a, lists.vertices_on_surface);
     if (group.penetration_count > 0) send_pair(PairList::inside, a, b);
   }
-  for (ContainedPart part : found.contained_parts) {
-    part.vertex = local_.user_vertex(part.inner.index, part.vertex);
-    part.inner = user(part.inner);
-    part.outer = user(part.outer);
+  for (const ContainedPart& contained : found.contained_parts) {
+    const ContainedPart part = renumbered(contained, local_);
     lists_of(part.inner).contained_parts.push_back(part);
     send_pair(PairList::inside, part.inner, part.outer);
   }

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "distributed_implementation.hpp"
+#include "renumbered.hpp"
 
 namespace supple {
 namespace {
@@ -36,7 +37,7 @@ std::optional<ContinuousContact> DistributedScene::Implementation::first_of_all(
   const double earliest = -latest[0];
   if (earliest == never) return std::nullopt;
   outbox_.clear();
-  if (own && own->toi == earliest) outbox_.to(0).put(named(*own));
+  if (own && own->toi == earliest) outbox_.to(0).put(renumbered(*own, local_));
   ranks.exchange(outbox_, inbox_);
   ContinuousContact first{};
   bool is_first = true;

@@ -13,7 +13,7 @@ namespace supple {
 
 /// Collective: whether two objects on any ranks may touch, at least by what each home knows of its part.
 bool DistributedScene::Implementation::has_pair_to_test(ContactKinds kind) {
-  bool has_filter_or_groups = static_cast<bool>(filter);
+  bool has_filter_or_groups = static_cast<bool>(filter_);
   std::vector<TestableObject> objects;
   PairableObjects own, earlier;
   for (const auto& [id, object] : homes_) {
@@ -91,7 +91,7 @@ void DistributedScene::Implementation::list_untested() {
       std::sort(objects.begin(), objects.end(),
                 [](const TestableObject& p, const TestableObject& q) { return p.id < q.id; });
       if (ranks.rank() != 0) return;
-      if (const auto found = nothing_to_test(kind, objects, filter)) reason = static_cast<int>(*found);
+      if (const auto found = nothing_to_test(kind, objects, filter_)) reason = static_cast<int>(*found);
     });
     MPI_Bcast(&reason, 1, MPI_INT, 0, ranks.handle());
     if (reason >= 0) untested_.push_back({kind, static_cast<NothingToTest>(reason)});

@@ -20,6 +20,11 @@ class Detect(RanksTest):
         # A response needs a step, which the start does not.
         self.assert_same(SCENES / "rabbit_pile.toml", csv=False, ranks=(3,))
 
+    def test_brute_force(self):
+        out = self.assert_same(SCENES / "nine.toml", "--verify", "--frames", 2, csv=False, ranks=(3,))
+        self.assertIn("brute force", out)
+        self.assert_same(SCENES / "nine.toml", "--verify", "--frames", 2, csv=False, command="simulate", ranks=(2,))
+
     def test_solids_and_parts(self):
         a, b = self.write("a.obj", SOLID), self.write("b.obj", moved(SOLID, 0.125, 0.125, 0.25))
         out = self.assert_same(a, b, "--contacts", "penetration", "--solid", ranks=(1, 2))
@@ -119,7 +124,6 @@ class Detect(RanksTest):
     def test_what_several_ranks_do_not_have(self):
         a, b = self.write("a.obj", TRIANGLE), self.write("b.obj", UPRIGHT)
         for what, options in {
-            "--verify": ["--verify"],
             "--max-contacts": ["--max-contacts", 3],
             "weld": ["--weld"],
         }.items():

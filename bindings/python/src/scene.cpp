@@ -53,24 +53,6 @@ nb::object triangles_of_object(const Scene& scene, ObjectId id) {
   return to_own_array<std::uint32_t, 3>(std::move(triangles));
 }
 
-nb::dict report_of(const VerifyReport& report) {
-  nb::dict dict;
-  dict["stopped"] = report.stopped;
-  dict["triangle_pairs_checked"] = report.triangle_pairs_checked;
-  dict["intersecting_pairs"] = report.intersecting_pairs;
-  dict["element_pairs_checked"] = report.element_pairs_checked;
-  dict["touching_element_pairs"] = report.touching_element_pairs;
-  dict["proximity_pairs_checked"] = report.proximity_pairs_checked;
-  dict["near_pairs"] = report.near_pairs;
-  dict["vertex_triangle_pairs_checked"] = report.vertex_triangle_pairs_checked;
-  dict["inside_vertices"] = report.inside_vertices;
-  dict["differences"] = to_table(std::vector(report.differences));
-  dict["continuous_differences"] = to_table(std::vector(report.continuous_differences));
-  dict["proximity_differences"] = to_table(std::vector(report.proximity_differences));
-  dict["penetration_differences"] = to_table(std::vector(report.penetration_differences));
-  return dict;
-}
-
 }  // namespace
 
 nb::object vertices_of_records(const Scene& scene, const std::string& record,

@@ -9,6 +9,24 @@
 
 namespace supple::python {
 
+inline nb::dict report_of(const VerifyReport& report) {
+  nb::dict dict;
+  dict["stopped"] = report.stopped;
+  dict["triangle_pairs_checked"] = report.triangle_pairs_checked;
+  dict["intersecting_pairs"] = report.intersecting_pairs;
+  dict["element_pairs_checked"] = report.element_pairs_checked;
+  dict["touching_element_pairs"] = report.touching_element_pairs;
+  dict["proximity_pairs_checked"] = report.proximity_pairs_checked;
+  dict["near_pairs"] = report.near_pairs;
+  dict["vertex_triangle_pairs_checked"] = report.vertex_triangle_pairs_checked;
+  dict["inside_vertices"] = report.inside_vertices;
+  dict["differences"] = to_table(std::vector(report.differences));
+  dict["continuous_differences"] = to_table(std::vector(report.continuous_differences));
+  dict["proximity_differences"] = to_table(std::vector(report.proximity_differences));
+  dict["penetration_differences"] = to_table(std::vector(report.penetration_differences));
+  return dict;
+}
+
 /// Binds the calls that a scene and a distributed scene share. `core.scene()` is one of them.
 template <class Core>
 void bind_shared_calls(nb::class_<Core>& scene) {

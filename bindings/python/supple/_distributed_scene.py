@@ -20,7 +20,7 @@ from ._generated import ResultPlacement
 from ._meshes import arrays_of_object
 from ._object import Handle
 from ._result import Result
-from ._scene import SafeStep
+from ._scene import SafeStep, VerifyReport
 from ._tables import Record, Table, record, table
 
 
@@ -167,6 +167,13 @@ the call on all of them.""",
     )
     def detect(self, *, stop: Stop | None = None, **request: Any) -> Result:
         return Result(self._core.detect(request, stop), None)
+
+    @contract(
+        "DistributedScene::verify",
+        "`stop` on one rank, or Ctrl-C, stops the call on all of them; `stopped` then says so.",
+    )
+    def verify(self, *, stop: Stop | None = None) -> VerifyReport:
+        return VerifyReport(self._core.verify(stop), None)
 
     @contract("DistributedScene::earliest_impact")
     def earliest_impact(self) -> Record | None:

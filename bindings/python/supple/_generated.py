@@ -342,7 +342,7 @@ CONTRACTS = {
     'DistributedScene::add_part':
         "Adds a part of an object. `triangles` have the numbers of the part's vertices: 0 is the first of `part.vertices`. All ranks give the same options. Throws `Error` as `add` does.",
     'DistributedScene::closest':
-        "As `Scene.closest` for the points of this rank, among the objects of all ranks. The options are the same on all ranks; a signed distance is an error. Takes time for each point and each cluster of the regions that its ball meets, whose radius is the distance of a cluster's farthest corner.",
+        'As `Scene.closest` for the points of this rank, among the objects of all ranks. The options are the same on all ranks; a signed distance is an error. Each point goes to the ranks whose regions its ball meets, whose radius is the distance of the farthest corner of a cluster near it.',
     'DistributedScene::collision_free_step':
         'As `Scene.collision_free_step`; the same on all ranks.',
     'DistributedScene::detect':
@@ -389,6 +389,8 @@ CONTRACTS = {
         'As `Scene.set_vertex_groups` for the vertices that this rank added, in its order. Ranks that share a vertex give it the same numbers.',
     'DistributedScene::stats':
         'What this rank did in the last collective call.',
+    'DistributedScene::verify':
+        'As `Scene.verify` of the last call, which must have been `detect`; the report is the same on all ranks, which share the pairs of objects. It takes the objects anew from the ranks that added them, so it also verifies what was sent. Each rank needs memory for the whole scene.',
     'ElementVertices::begin':
         'See `ElementVertices::begin` in supple/contact.hpp.',
     'ElementVertices::end':

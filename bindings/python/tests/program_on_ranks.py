@@ -169,6 +169,10 @@ def random_scenes():
                 last.append((result, {name: result._list(name).tobytes() for name in result._names()}))
             else:
                 assert len(result) == 0 and len(result.events["volume_begin"]) == 0
+            report = distributed.verify()
+            assert report and sum(report.checked.values()), report
+            if WORLD.rank == 0:
+                assert report.checked == one.verify().checked, report
             points = random.uniform(-1, 1, (WORLD.size, 3, 3))[WORLD.rank]
             assert_equal(distributed.closest(points), one.closest(points), "closest")
             both = distributed.earliest_impact(), one.earliest_impact()

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "supple/call_limits.hpp"
 #include "supple/options.hpp"
 #include "supple/queries.hpp"
 #include "supple/result.hpp"
@@ -51,7 +52,7 @@ struct ObjectPart {
 
 /// What one rank did in the last collective call.
 struct DistributedStats {
-  std::uint64_t bytes_sent = 0, messages_sent = 0;  ///< to other ranks
+  std::uint64_t bytes_sent = 0, messages_sent = 0;  ///< to other ranks, without collective calls
   std::uint64_t clusters = 0;                       ///< of the parts that this rank added
   std::uint64_t cluster_pairs = 0;                  ///< that this rank tests
   std::uint64_t triangles = 0;                      ///< that this rank needs for its pairs
@@ -133,6 +134,10 @@ class DistributedScene {
   /// statistics are sums over all ranks, its times those of the slowest rank. A stop on one rank stops the
   /// call on all of them. Requests with `max_contacts`, manifolds or first contacts of elements are errors.
   const DetectResult& detect(const DetectRequest& request = {});
+  /// As `Scene::verify` of the last call, which must have been `detect`; the report is the same on all ranks,
+  /// which share the pairs of objects. It takes the objects anew from the ranks that added them, so it also
+  /// verifies what was sent. Each rank needs memory for the whole scene.
+  VerifyReport verify(const CallLimits& limits = {});
   /// As `Scene::earliest_impact`; the same on all ranks.
   std::optional<ContinuousContact> earliest_impact();
   /// As `Scene::max_step`; the same on all ranks.
@@ -142,8 +147,8 @@ class DistributedScene {
   /// As `Scene::distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair.
   std::vector<ProximityPair> distances(double max_distance);
   /// As `Scene::closest` for the points of this rank, among the objects of all ranks. The options are the
-  /// same on all ranks; a signed distance is an error. Takes time for each point and each cluster of the
-  /// regions that its ball meets, whose radius is the distance of a cluster's farthest corner.
+  /// same on all ranks; a signed distance is an error. Each point goes to the ranks whose regions its ball
+  /// meets, whose radius is the distance of the farthest corner of a cluster near it.
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& options = {});
 

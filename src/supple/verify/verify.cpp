@@ -20,7 +20,7 @@ class Verification {
   Verification(const World& world, const Question& question, const DetectResult& result)
       : world_(world), question_(question), result_(result) {}
 
-  VerifyReport run(const CallLimits& limits) const;
+  VerifyReport run(const CallLimits& limits, const PairShare& share) const;
 
  private:
   /// These compare the contacts of two objects, or of one object with itself. `group` holds those that were
@@ -134,7 +134,7 @@ void Verification::verify_penetrations(const ObjectPair& pair, std::span<const T
   verify_inside({pair.b, pair.a}, b, a, &TrianglePair::b);
 }
 
-VerifyReport Verification::run(const CallLimits& limits) const {
+VerifyReport Verification::run(const CallLimits& limits, const PairShare& share) const {
   VerifyReport report;
   auto contacts = result_.groups.begin();
   auto impacts = result_.continuous_groups.begin();
@@ -143,12 +143,15 @@ VerifyReport Verification::run(const CallLimits& limits) const {
     const bool reported = next != groups.end() && next->a == pair.a && next->b == pair.b;
     return reported ? &*next++ : nullptr;
   };
+  std::size_t number = 0, next = share.first;
   for (const ObjectPair& pair : world_.all_pairs()) {
     report.stopped = stop_of(limits).stop_requested();
     if (report.stopped) break;
     const ContactGroup* const of_contacts = next_of(contacts, result_.groups, pair);
     const ContactGroup* const of_impacts = next_of(impacts, result_.continuous_groups, pair);
     const ContactGroup* const of_proximity = next_of(near, result_.proximity_groups, pair);
+    if (number++ != next) continue;
+    next += share.stride;
     std::vector<TrianglePair> touching;
     if (question_.has_intersections()) touching = verify_contacts(pair, of_contacts, report);
     if (question_.is_continuous()) verify_impacts(pair, of_impacts, report);
@@ -161,8 +164,8 @@ VerifyReport Verification::run(const CallLimits& limits) const {
 }  // namespace
 
 VerifyReport verify(const World& world, const Question& question, const DetectResult& result,
-                    const CallLimits& limits) {
-  return Verification(world, question, result).run(limits);
+                    const CallLimits& limits, const PairShare& share) {
+  return Verification(world, question, result).run(limits, share);
 }
 
 }  // namespace supple

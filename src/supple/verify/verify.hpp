@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "answers/question.hpp"
 #include "supple/call_limits.hpp"
 #include "supple/result.hpp"
@@ -7,9 +9,14 @@
 
 namespace supple {
 
+/// The pairs of objects with these numbers, in their order: `first`, `first + stride` and so on.
+struct PairShare {
+  std::size_t first = 0, stride = 1;
+};
+
 /// Compares the result of a search with exact brute force; see `Scene::verify`. The world must be as it was
 /// searched.
 VerifyReport verify(const World& world, const Question& question, const DetectResult& result,
-                    const CallLimits& limits);
+                    const CallLimits& limits, const PairShare& share = {});
 
 }  // namespace supple

@@ -102,6 +102,14 @@ NB_MODULE(_distributed, module) {
     core.scene().add_part(id, xyz, faces, {span_of(vertex_numbers), span_of(triangle_numbers)}, options);
   });
   scene.def("detect", &DistributedCore::detect, nb::arg(), nb::arg().none());
+  scene.def(
+      "verify",
+      [](DistributedCore& core, Stop* stop) {
+        const Alone alone(core.guard());
+        const auto verified = [&](std::stop_token token) { return core.scene().verify({std::move(token)}); };
+        return report_of(run_stoppable(stop, verified, false));
+      },
+      nb::arg().none());
   scene.def("distances", [](DistributedCore& core, double max_distance) {
     const Alone alone(core.guard());
     return to_table([&] {

@@ -35,6 +35,27 @@ struct Coordinates {
 void write_options(const ObjectOptions& options, Writer& to);
 ObjectOptions read_options(Reader& from);
 
+/// An object as `HomeObject::write` wrote it, or all its parts as one.
+struct SavedObject {
+  ObjectOptions options;
+  bool is_part = false, has_motion = false, is_double = false;
+  std::vector<Triangle> triangles;             ///< corners as indices into `vertices`, as edges and points
+  std::vector<std::uint32_t> faces, vertices;  ///< the user's numbers, ascending
+  std::vector<std::uint32_t> groups, masks;    ///< of the vertices; empty without groups
+  std::vector<double> start, end;              ///< x y z of the vertices
+
+  /// Calls `visit(start, end)` with the positions in the user's precision.
+  template <class Visit>
+  void visit_positions(const Visit& visit) const {
+    if (is_double) return visit(PositionsView(start), PositionsView(end));
+    const std::vector<float> from(start.begin(), start.end()), to(end.begin(), end.end());
+    visit(PositionsView(from), PositionsView(to));
+  }
+};
+
+/// Reads what one or several `HomeObject::write` wrote of one object.
+SavedObject read_object(std::span<const std::span<const std::byte>> parts);
+
 /// Neighbouring triangles of an object, and edges and points of no triangle.
 struct Cluster {
   std::vector<std::uint32_t> vertices;  ///< of the part, ascending
@@ -52,6 +73,8 @@ class HomeObject {
   HomeObject(ObjectId id, const PositionsView& positions, const TrianglesView& triangles,
              const ObjectPart* part, const ObjectOptions& options, std::uint32_t cluster_triangles,
              std::uint32_t addition);
+  static HomeObject of(ObjectId id, const SavedObject& saved, std::uint32_t cluster_triangles,
+                       std::uint32_t addition);
 
   void set_positions(const PositionsView& positions);
   void set_motion(const PositionsView& from, const PositionsView& to);
@@ -64,11 +87,8 @@ class HomeObject {
   /// How far the vertices of a cluster move, without the mean of their ways.
   VertexWays ways_of(const Cluster& cluster) const;
 
-  /// Writes all of it, for `HomeObject::read`.
+  /// Writes all of it, for `read_object`.
   void write(Writer& to) const;
-  /// The object of what one or several `write` wrote of it: the parts become one.
-  static HomeObject read(ObjectId id, std::span<const std::span<const std::byte>> parts,
-                         std::uint32_t cluster_triangles, std::uint32_t addition);
 
   void write_topology(std::uint32_t cluster, Writer& to) const;
   void write_positions(std::uint32_t cluster, Writer& to) const;
@@ -93,6 +113,7 @@ class HomeObject {
   std::vector<int> homes;  ///< on the first of them; else empty
   Aabb box;                ///< of all parts, on the first home
   int first_home = 0;
+  bool is_wide = false;  ///< most ranks have parts
 
  private:
   void check_count(const PositionsView& positions, const char* call) const;

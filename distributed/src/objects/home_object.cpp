@@ -1,4 +1,4 @@
-#include "home_object.hpp"
+#include "objects/home_object.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -5,7 +5,7 @@
 
 #include "core/error.hpp"
 #include "core/sort_once.hpp"
-#include "home_object.hpp"
+#include "objects/home_object.hpp"
 
 namespace supple {
 namespace {
@@ -92,27 +92,23 @@ void HomeObject::write(Writer& to) const {
   to.put_all(vertices);
 }
 
-HomeObject HomeObject::read(ObjectId id, std::span<const std::span<const std::byte>> parts,
-                            std::uint32_t cluster_triangles, std::uint32_t addition) {
-  ObjectOptions options;
-  bool is_part = false, has_motion = false, is_double = false;
+SavedObject read_object(std::span<const std::span<const std::byte>> parts) {
+  SavedObject object;
   std::vector<SavedFace> faces;
   std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<std::uint32_t> points;
   std::vector<SavedVertex> vertices;
   for (const std::span<const std::byte> part : parts) {
     Reader from(part);
-    std::vector<std::uint32_t> points = options.points;
-    ObjectOptions of_part = read_options(from);
-    of_part.is_static = from.get<bool>();
-    is_part = from.get<bool>();
-    has_motion = from.get<bool>() || has_motion;
-    is_double = from.get<bool>() || is_double;
+    object.options = read_options(from);
+    object.options.is_static = from.get<bool>();
+    object.is_part = from.get<bool>();
+    object.has_motion = from.get<bool>() || object.has_motion;
+    object.is_double = from.get<bool>() || object.is_double;
     from.append_all(faces);
     from.append_all(edges);
     from.append_all(points);
     from.append_all(vertices);
-    options = of_part;
-    options.points = std::move(points);
   }
   std::sort(faces.begin(), faces.end());
   std::sort(vertices.begin(), vertices.end());
@@ -122,37 +118,40 @@ HomeObject HomeObject::read(ObjectId id, std::span<const std::span<const std::by
   const auto local = [&](std::uint32_t number) {
     const auto found = std::lower_bound(vertices.begin(), vertices.end(), SavedVertex{number});
     if (found == vertices.end() || found->number != number)
-      fail("vertex " + std::to_string(number) + " of " + options.name + " is missing");
+      fail("vertex " + std::to_string(number) + " of " + object.options.name + " is missing");
     return static_cast<std::uint32_t>(found - vertices.begin());
   };
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> face_ids, vertex_ids, groups, masks;
   for (const SavedFace& face : faces) {
-    face_ids.push_back(face.number);
-    triangles.push_back({local(face.corners[0]), local(face.corners[1]), local(face.corners[2])});
+    object.faces.push_back(face.number);
+    object.triangles.push_back({local(face.corners[0]), local(face.corners[1]), local(face.corners[2])});
   }
-  for (const auto& edge : edges) options.edges.push_back({local(edge[0]), local(edge[1])});
-  for (std::uint32_t& point : options.points) point = local(point);
-  std::vector<double> start, positions;
+  for (const auto& edge : edges) object.options.edges.push_back({local(edge[0]), local(edge[1])});
+  for (const std::uint32_t point : points) object.options.points.push_back(local(point));
+  const bool has_groups =
+      std::any_of(vertices.begin(), vertices.end(), [](const auto& v) { return v.is_grouped != 0; });
   for (const SavedVertex& vertex : vertices) {
-    vertex_ids.push_back(vertex.number);
-    groups.push_back(vertex.group);
-    masks.push_back(vertex.mask);
-    start.insert(start.end(), vertex.start.begin(), vertex.start.end());
-    positions.insert(positions.end(), vertex.end.begin(), vertex.end.end());
+    object.vertices.push_back(vertex.number);
+    if (has_groups) {
+      object.groups.push_back(vertex.group);
+      object.masks.push_back(vertex.mask);
+    }
+    object.start.insert(object.start.end(), vertex.start.begin(), vertex.start.end());
+    object.end.insert(object.end.end(), vertex.end.begin(), vertex.end.end());
   }
-  const ObjectPart part{vertex_ids, face_ids};
-  const auto with = [&](const PositionsView& from, const PositionsView& now) {
-    HomeObject object(id, now, triangles, is_part ? &part : nullptr, options, cluster_triangles, addition);
-    if (has_motion) object.start_.assign(from);
-    if (std::any_of(vertices.begin(), vertices.end(), [](const auto& v) { return v.is_grouped != 0; }))
-      object.set_vertex_groups(groups, masks);
-    return object;
-  };
-  if (is_double) return with(PositionsView(start), PositionsView(positions));
-  const std::vector<float> float_start(start.begin(), start.end()),
-      float_positions(positions.begin(), positions.end());
-  return with(PositionsView(float_start), PositionsView(float_positions));
+  return object;
+}
+
+HomeObject HomeObject::of(ObjectId id, const SavedObject& saved, std::uint32_t cluster_triangles,
+                          std::uint32_t addition) {
+  const ObjectPart part{saved.vertices, saved.faces};
+  HomeObject object(id, PositionsView(saved.end), saved.triangles, saved.is_part ? &part : nullptr,
+                    saved.options, cluster_triangles, addition);
+  object.set_vertex_groups(saved.groups, saved.masks);
+  saved.visit_positions([&](const PositionsView& start, const PositionsView& end) {
+    object.end_.assign(end);
+    if (saved.has_motion) object.start_.assign(start);
+  });
+  return object;
 }
 
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bytes.hpp"
-#include "home_object.hpp"
+#include "objects/home_object.hpp"
 #include "supple/options.hpp"
 #include "world/world.hpp"
 
@@ -62,10 +62,10 @@ class LocalWorld {
     if (found == objects_.end() || found->second.slot == none) return std::nullopt;
     return world_.id_of(found->second.slot);
   }
-  // The user's numbers of objects, by slot, and of what belongs to them.
-  ObjectId user_object(std::uint32_t slot) const { return by_slot_[slot]->id; }
-  std::uint32_t user_vertex(std::uint32_t slot, std::uint32_t v) const { return by_slot_[slot]->vertices[v]; }
-  std::uint32_t user_face(std::uint32_t slot, std::uint32_t t) const { return by_slot_[slot]->faces[t]; }
+  // The user's numbers of an object of the world, and of what belongs to it; see `renumbered`.
+  ObjectId object(ObjectId local) const { return by_slot_[local.index]->id; }
+  std::uint32_t vertex(ObjectId local, std::uint32_t v) const { return by_slot_[local.index]->vertices[v]; }
+  std::uint32_t face(ObjectId local, std::uint32_t t) const { return by_slot_[local.index]->faces[t]; }
 
  private:
   struct GuestCluster {

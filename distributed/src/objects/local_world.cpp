@@ -1,4 +1,4 @@
-#include "local_world.hpp"
+#include "objects/local_world.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,201 @@
+// Brute force over the whole scene. Each rank takes all objects from their homes and all that was found, so
+// neither clusters nor regions take part, and tests every so many pairs of objects.
+
+#include "verify/verify.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "distributed_implementation.hpp"
+#include "renumbered.hpp"
+
+namespace supple {
+namespace {
+
+/// The user's numbers of an object.
+struct Numbers {
+  ObjectId object;
+  std::vector<std::uint32_t> faces, vertices;  ///< ascending
+};
+
+/// All objects, in the order of their ids, with numbers from 0.
+class WholeScene {
+ public:
+  explicit WholeScene(const SceneOptions& options) : world_(options) {}
+
+  void add(ObjectId id, const SavedObject& saved);
+  void set_filter(const PairFilter& filter);
+  /// Gives what was found the numbers of this world.
+  void renumber(FoundLists& found) const;
+  const World& world() const { return world_; }
+
+  /// The numbers here of the user's.
+  struct Own {
+    const WholeScene& scene;
+
+    ObjectId object(ObjectId id) const { return scene.world_.id_of(scene.slots_.at(id)); }
+    std::uint32_t face(ObjectId id, std::uint32_t t) const { return place(numbers(id).faces, t); }
+    std::uint32_t vertex(ObjectId id, std::uint32_t v) const { return place(numbers(id).vertices, v); }
+
+   private:
+    const Numbers& numbers(ObjectId id) const { return scene.numbers_[scene.slots_.at(id)]; }
+    static std::uint32_t place(const std::vector<std::uint32_t>& numbers, std::uint32_t number) {
+      const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
+      if (found == numbers.end() || *found != number) fail("verify: a contact has elements of no object");
+      return static_cast<std::uint32_t>(found - numbers.begin());
+    }
+  };
+
+  /// The user's numbers of those here.
+  struct Users {
+    const WholeScene& scene;
+
+    ObjectId object(ObjectId own) const { return scene.numbers_[own.index].object; }
+    std::uint32_t face(ObjectId own, std::uint32_t t) const { return scene.numbers_[own.index].faces[t]; }
+    std::uint32_t vertex(ObjectId own, std::uint32_t v) const {
+      return scene.numbers_[own.index].vertices[v];
+    }
+  };
+
+ private:
+  World world_;
+  std::vector<Numbers> numbers_;  // by slot
+  std::map<ObjectId, std::uint32_t> slots_;
+};
+
+void WholeScene::add(ObjectId id, const SavedObject& saved) {
+  ObjectOptions options = saved.options;
+  options.is_static = false;  // until it has its motion
+  saved.visit_positions([&](const PositionsView& start, const PositionsView& end) {
+    const ObjectId own = world_.add(end, saved.triangles, options, "");
+    if (saved.has_motion) world_.set_motion(own, start, end);
+    world_.set_vertex_groups(own, saved.groups, saved.masks);
+    world_.set_static(own, saved.options.is_static);
+    slots_.emplace(id, own.index);
+  });
+  Numbers& numbers = numbers_.emplace_back(Numbers{id, saved.faces, saved.vertices});
+  numbers.faces.shrink_to_fit();
+  numbers.vertices.shrink_to_fit();
+}
+
+void WholeScene::set_filter(const PairFilter& filter) {
+  if (!filter) return;
+  world_.set_filter([this, &filter](ObjectId a, ObjectId b) {
+    return filter(numbers_[a.index].object, numbers_[b.index].object);
+  });
+}
+
+void WholeScene::renumber(FoundLists& found) const {
+  const Own own{*this};
+  const auto renumber_all = [&](auto& records) {
+    for (auto& record : records) record = renumbered(record, own);
+  };
+  renumber_all(found.contacts);
+  renumber_all(found.continuous_contacts);
+  renumber_all(found.proximity_pairs);
+  renumber_all(found.penetrations);
+  renumber_all(found.contained_parts);
+  for (PenetrationGroup& group : found.penetration_groups) {
+    for (std::uint32_t i = 0; i < group.on_surface_count; ++i) {
+      std::uint32_t& vertex = found.vertices_on_surface[group.first_on_surface + i];
+      vertex = own.vertex(group.a, vertex);
+    }
+    group.a = own.object(group.a);
+    group.b = own.object(group.b);
+  }
+}
+
+/// Calls `visit(reports' list)` for each list of differences.
+template <class Visit>
+void for_each_differences(const Visit& visit) {
+  visit(&VerifyReport::differences);
+  visit(&VerifyReport::continuous_differences);
+  visit(&VerifyReport::proximity_differences);
+  visit(&VerifyReport::penetration_differences);
+}
+
+template <class Visit>
+void for_each_count(const Visit& visit) {
+  for (const auto count : {&VerifyReport::triangle_pairs_checked, &VerifyReport::intersecting_pairs,
+                           &VerifyReport::element_pairs_checked, &VerifyReport::touching_element_pairs,
+                           &VerifyReport::proximity_pairs_checked, &VerifyReport::near_pairs,
+                           &VerifyReport::vertex_triangle_pairs_checked, &VerifyReport::inside_vertices})
+    visit(count);
+}
+
+}  // namespace
+
+VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) {
+  ranks.together([&] {
+    if (!has_detected_)
+      fail("verify: nothing was detected at the present positions; call detect directly before it");
+    if (question_.contacts == ContactKinds::none)
+      fail("verify: the last detect searched no contacts, so there is nothing to compare");
+  });
+  std::vector<std::byte> own;
+  ranks.together([&] {
+    Writer to(own);
+    to.put<std::uint64_t>(homes_.size());
+    for (const auto& [id, home] : homes_) {
+      std::vector<std::byte> bytes;
+      Writer writer(bytes);
+      home.write(writer);
+      to.put(id);
+      to.put_all(bytes);
+    }
+    lists_.write(to);
+  });
+  ranks.share(own, inbox_);
+  VerifyReport report;
+  std::vector<std::byte> of_report;
+  ranks.together([&] {
+    std::map<ObjectId, std::vector<std::span<const std::byte>>> parts;
+    FoundLists found;
+    inbox_.for_each([&](Reader& from, int) {
+      for (auto count = from.get<std::uint64_t>(); count > 0; --count) {
+        const auto id = from.get<ObjectId>();
+        parts[id].push_back(from.bytes_of_all<std::byte>());
+      }
+      found.append(from);
+    });
+    WholeScene scene(options.scene);
+    for (const auto& [id, of_object] : parts) scene.add(id, read_object(of_object));
+    scene.set_filter(filter_);
+    scene.renumber(found);
+    found.sort();
+    DetectResult result;
+    found.list(result);
+    report = supple::verify(scene.world(), question_, result, limits,
+                            {static_cast<std::size_t>(ranks.rank()), static_cast<std::size_t>(ranks.size())});
+    Writer to(of_report);
+    for_each_count([&](auto count) { to.put(report.*count); });
+    to.put(report.stopped);
+    for_each_differences([&](auto differences) {
+      for (auto& difference : report.*differences)
+        difference = renumbered(difference, WholeScene::Users{scene});
+      to.put_all(report.*differences);
+    });
+  });
+  ranks.share(of_report, inbox_);
+  ranks.together([&] {
+    report = {};
+    inbox_.for_each([&](Reader& from, int) {
+      for_each_count([&](auto count) { report.*count += from.get<std::uint64_t>(); });
+      report.stopped = from.get<bool>() || report.stopped;
+      for_each_differences([&](auto differences) { from.append_all(report.*differences); });
+    });
+    // All differences of two objects are from one rank, in their order.
+    for_each_differences([&](auto differences) {
+      std::stable_sort((report.*differences).begin(), (report.*differences).end(),
+                       [](const auto& p, const auto& q) {
+                         return std::minmax(p.object_a, p.object_b) < std::minmax(q.object_a, q.object_b);
+                       });
+    });
+  });
+  return report;
+}
+
+}  // namespace supple
