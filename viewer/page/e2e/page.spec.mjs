@@ -112,9 +112,12 @@ async function keyboardAlone(stage) {
     }
     assert.fail(`Tab never comes to ${wanted}`);
   };
-  await tabTo(/^Inspect$/);
+  await tabTo(/^Contacts$/);
+  await key("ArrowLeft");
   await key("ArrowRight");
   await tabTo(/^Contacts$/);
+  await key("ArrowDown");  // a pair
+  await key("ArrowRight");  // its contacts
   await key("ArrowDown");
   await until(page, () => supple.model.contact !== null);
 
