@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import urllib.parse
+from typing import ClassVar
 
 import pytest
 from conftest import ROOT
@@ -25,7 +26,7 @@ SCENE, FRAME, ANSWER, FAILURE = 1, 2, 3, 4
 class Page:
     """A page that draws nothing: a WebSocket (RFC 6455) and the messages of docs/protocol.md."""
 
-    opened: list["Page"] = []
+    opened: ClassVar[list["Page"]] = []
 
     def __init__(self, url):
         parts = urllib.parse.urlsplit(url)
@@ -258,5 +259,7 @@ def test_killed_program_closes_the_connection():
 
 def test_program_ends_without_closing_the_view():
     script = PAUSED.replace("wait_for_page=True", "wait_for_page=False")
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False
+    )
     assert done.returncode == 0 and done.stderr == ""

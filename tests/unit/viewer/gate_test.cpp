@@ -210,7 +210,10 @@ TEST_F(WatchedProgram, BreakSaysWhatAndWhere) {
   say({{"do", "break"}, {"contact_begin", true}});
   turn();
   run(30);
-  ASSERT_TRUE(until([&] { return !frames_.empty() && !frames_.back().json["playing"]; }));
+  ASSERT_TRUE(until([&] {
+    give_credit();  // for frames of the steps before
+    return !frames_.empty() && !frames_.back().json["playing"];
+  }));
   const Json& found = frames_.back().json["break"];
   EXPECT_EQ(found["event"], "contact_begin");
   EXPECT_EQ(found["text"], "left begins to touch right");

@@ -63,7 +63,7 @@ function wordsOf(status: Extract<Status, { state: "ended" }>, carriesLibrary: bo
     case "taken-over":
       return { title: "Open in another page", text: "Another page has taken over this session. Only one page at a time can show a session.", again: "Take it back" };
     case "program-ended":
-      return { title: "The program has ended", text: "The page shows the last frame. Start supple view again: with the same --port and --token-file the page connects by itself, otherwise open the address it prints.", again: "Reconnect now" };
+      return { title: "The program has ended", text: "The page shows the last frame. Start it again: with the same port and token file the page connects by itself, otherwise open the address it prints.", again: "Reconnect now" };
     case "refused":
       return { title: "The program rejected a command of this page", text: detail || "Page and program may have different versions. Reload the page.", again: "Reconnect" };
     case "failed":

@@ -53,7 +53,8 @@ export class Program {
     else input.checked = value === true;
     this.inputs.set(key, input);
     const label = h("label", { for: id }, doc);
-    const row = h("div", { class: "break-row" }, ...(isNumber ? [label, input, unit] : [input, label]));
+    if (unit) input.title = unit;
+    const row = h("div", { class: "break-row" }, ...(isNumber ? [label, input] : [input, label]));
     if (key !== "contact_begin") return [row];
     return [row, h("div", { class: "break-row break-pair" }, this.objects[0]!, "and", this.objects[1]!)];
   }
