@@ -171,7 +171,8 @@ void Session::Implementation::reset(Arguments& arguments) {
 
 void Session::Implementation::set(Arguments& arguments) {
   if (stage_->program() != nullptr) return arguments.fail("the program chooses its options itself");
-  const Settings settings = read_settings(settings_, stage_->simulation() != nullptr, arguments);
+  const Settings settings =
+      read_settings(settings_, show_.simulation.scene, stage_->simulation() != nullptr, arguments);
   if (!arguments.check() || !fits_in_memory(show_, settings, most_memory_, arguments)) return;
   settings.restart == settings_.restart ? change(settings) : restart(settings);
 }

@@ -103,9 +103,13 @@ void check_show(const SceneView& show) {
 
 }  // namespace
 
-Settings read_settings(Settings settings, bool of_simulation, Arguments& arguments) {
+Settings read_settings(Settings settings, const SceneOptions& scene, bool of_simulation,
+                       Arguments& arguments) {
+  bool names_scene_octree = false;
   const auto read = [&]<class Struct, class Value>(const Field<Struct, Value>& field, Value& value) {
-    return is_setting(field) && arguments.option(field, value);
+    const bool is_named = is_setting(field) && arguments.option(field, value);
+    if (std::is_same_v<Struct, SceneOctreeOptions> && is_named) names_scene_octree = true;
+    return is_named;
   };
   settings.scene.read(read);
   settings.octree.read(read);
@@ -115,6 +119,11 @@ Settings read_settings(Settings settings, bool of_simulation, Arguments& argumen
       if (arguments.option(field, value)) settings.restart.*member = value;
     });
   }
+  SceneOptions chosen = scene;
+  settings.scene.apply_to(chosen);
+  if (names_scene_octree && !uses_scene_octree(chosen.broad_phase))
+    arguments.fail(std::string("options of the scene octree have no effect with the broad phase ") +
+                   word_of(chosen.broad_phase) + "; choose automatic or octree first");
   return settings;
 }
 

@@ -66,7 +66,8 @@ constexpr bool is_setting(const Field<Struct, Value>& field) {
 }
 
 /// The settings after the command `set`, which changes those that it names.
-Settings read_settings(Settings settings, bool of_simulation, Arguments& arguments);
+Settings read_settings(Settings settings, const SceneOptions& scene, bool of_simulation,
+                       Arguments& arguments);
 
 /// Other methods refuse options of the scene octree.
 constexpr bool uses_scene_octree(BroadPhaseMethod method) {

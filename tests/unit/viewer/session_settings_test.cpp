@@ -68,6 +68,16 @@ TEST(ViewerSettings, SetChangesEachOptionAndKeepsTheStateOrRestartsAsAnnounced) 
   EXPECT_EQ(scene.json["time_step"], 0.005);
 }
 
+TEST(ViewerSettings, OptionsOfTheSceneOctreeNeedAMethodThatHasOne) {
+  TestPage page(three_balls());
+  page.ask({{"do", "set"}, {"broad_phase", "sweep"}});
+  EXPECT_EQ(page.failure(R"({"do": "set", "scene_octree_max_level": 4})"),
+            "set: options of the scene octree have no effect with the broad phase sweep; choose automatic or "
+            "octree first");
+  page.say({{"do", "set"}, {"broad_phase", "octree"}, {"scene_octree_max_level", 4}});
+  EXPECT_EQ(page.scene().json["scene_octree_max_level"], 4);
+}
+
 /// Options of the detection change nothing of the motion, and find what a scene with these options finds.
 TEST(ViewerSettings, AfterASetTheMotionGoesOnAsWithoutIt) {
   SceneView show = three_balls();

@@ -91,7 +91,34 @@ async function emptyLayersAreFolded(stage) {
   await layers.getByRole("checkbox", { name: "Intersecting triangles" }).waitFor();
 }
 
+/** A click on a column sorts by it, the next one reverses, the third restores the order of objects. */
+async function pairsAreSorted(stage) {
+  const balls = ball("ball 10", 0) + ball("ball 9", 1.2) + ball("ball 2", 3) + ball("ball 1", 4.9);
+  const { page } = await stage.view(stage.file("sorted.toml", balls));
+  const table = page.getByRole("treegrid", { name: "Contacts" });
+  await table.getByText("ball 1", { exact: true }).waitFor();
+  const column = (number) => table.locator(`.row:visible > :nth-child(${number})`).allTextContents();
+  const names = async () => (await column(1)).map((text) => text.replace("▸ ", ""));
+  const first = ["ball 10", "ball 9", "ball 2"];
+  assert.deepEqual(await names(), first);
+  const byName = page.getByRole("button", { name: "Sort by object a" });
+  await byName.click();
+  assert.deepEqual(await names(), ["ball 2", "ball 9", "ball 10"]);
+  assert.equal(await byName.getAttribute("aria-pressed"), "true");
+  await byName.click();
+  assert.deepEqual(await names(), ["ball 10", "ball 9", "ball 2"]);
+  await byName.click();
+  assert.deepEqual(await names(), first);
+  assert.equal(await byName.getAttribute("aria-pressed"), "false");
+  await page.getByRole("button", { name: "Sort by contacts" }).press("Enter");
+  const counts = (await column(3)).map(Number);
+  assert.ok(counts[0] >= counts[1] && counts[1] >= counts[2] && counts[0] > counts[2], counts.join());
+  await page.getByRole("button", { name: "Sort by object b" }).click();
+  assert.deepEqual(await column(2), ["ball 1", "ball 2", "ball 9"]);
+}
+
 export const tests = [
+  ["pairs are sorted by each column", pairsAreSorted],
   ["a small gap is seen", smallGapsAreSeen],
   ["dense marks thin out", denseMarksThinOut],
   ["the first line says what touches", theFirstLineSaysWhatTouches],

@@ -21,6 +21,9 @@ export class ContactTable {
   /** The first row of each listed pair, and the number of rows. */
   private starts: number[] = [0];
   private readonly open = new Set<string>();
+  private readonly heads: HTMLButtonElement[];
+  /** The column by which pairs are sorted, and whether against its first order; null for the order of objects. */
+  private sorting: { column: number; reversed: boolean } | null = null;
   /** The chosen pair and the number of the single contact in it, −1 for the pair itself. */
   private chosen: { pair: string; single: number } | null = null;
 
@@ -33,10 +36,11 @@ export class ContactTable {
       ["object a", ""], ["object b", ""], ["contacts", "Contacts and near pairs of the two objects"],
       ["gap or depth", "The smallest gap, the largest depth, or the time of the first hit as a part of the step"],
     ];
+    this.heads = heads.map(([name, title], column) => h("button", { type: "button", title: `${title} (sort)`.trim(), "aria-label": `Sort by ${name}`, onclick: () => this.sortBy(column) }, name));
     this.element = h(
       "div", { class: "contacts pairs" },
       h("div", { class: "table-top" }, this.filter, this.summary),
-      h("div", { class: "row head", "aria-hidden": "true" }, ...heads.map(([name, title]) => h("span", { title }, name))),
+      h("div", { class: "row head", role: "group", "aria-label": "Sort contacts" }, ...this.heads),
       this.window.element,
     );
     model.on("frame", () => this.update());
@@ -52,11 +56,36 @@ export class ContactTable {
     return this.model.objects[object]!.name;
   }
 
+  /** The first click sorts, the second reverses, the third restores the order of objects. */
+  private sortBy(column: number): void {
+    const { sorting } = this;
+    if (sorting?.column !== column) this.sorting = { column, reversed: false };
+    else this.sorting = sorting.reversed ? null : { column, reversed: true };
+    this.heads.forEach((head, i) => {
+      const isReversed = this.sorting?.column === i ? this.sorting.reversed : null;
+      head.dataset["sort"] = isReversed === null ? "" : isReversed === (i < 2) ? "down" : "up";
+      head.setAttribute("aria-pressed", String(isReversed !== null));
+    });
+    this.update();
+  }
+
+  private sorted(pairs: TouchingPair[]): TouchingPair[] {
+    if (!this.sorting) return pairs;
+    const { column, reversed } = this.sorting;
+    const order = [
+      (p: TouchingPair, q: TouchingPair) => compareNames(this.nameOf(p.a), this.nameOf(q.a)),
+      (p: TouchingPair, q: TouchingPair) => compareNames(this.nameOf(p.b), this.nameOf(q.b)),
+      (p: TouchingPair, q: TouchingPair) => q.count - p.count,
+      (p: TouchingPair, q: TouchingPair) => overlapOf(q) - overlapOf(p),
+    ][column]!;
+    return [...pairs].sort((p, q) => (reversed ? order(q, p) : order(p, q)));
+  }
+
   private update(): void {
     const { frame } = this.model;
     const all = frame ? pairsOf(frame) : [];
     const wanted = this.filter.value.trim().toLowerCase();
-    this.listed = wanted === "" ? all : all.filter(({ a, b }) => [a, b].some((object) => this.nameOf(object).toLowerCase().includes(wanted)));
+    this.listed = this.sorted(wanted === "" ? all : all.filter(({ a, b }) => [a, b].some((object) => this.nameOf(object).toLowerCase().includes(wanted))));
     this.starts = [0];
     for (const pair of this.listed) this.starts.push(this.starts.at(-1)! + 1 + (this.open.has(keyOf(pair)) ? pair.count : 0));
     const pairs = `${readable(all.length)} ${all.length === 1 ? "pair" : "pairs"}`;
@@ -185,6 +214,16 @@ const keyOf = ({ a, b }: TouchingPair): string => `${a} ${b}`;
 /** At most this many points decide how much is shown of a pair. */
 const MOST_POINTS = 10_000;
 const ends = (points: number[][], axis: number): number[] => points.slice(0, MOST_POINTS).map((point) => point[axis]!);
+
+const { compare: compareNames } = new Intl.Collator(undefined, { numeric: true });
+
+/** Deeper pairs have more, pairs that are farther apart less: depths, then intersections, hits and gaps. */
+function overlapOf(pair: TouchingPair): number {
+  if (pair.depth !== null) return 1 + pair.depth;
+  if (isTouching(pair)) return 1;
+  if (isHit(pair)) return 1 - pair.time! / 2;
+  return -pair.gap!;
+}
 
 function measureOf(pair: TouchingPair): string {
   if (pair.depth !== null) return `depth ${rounded(pair.depth)}`;
