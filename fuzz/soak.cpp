@@ -184,16 +184,25 @@ class Soak {
   }
 
   void begin_recording() {
-    if (!options_.record.empty()) recorder_.emplace(options_.record, simulation_.scene().objects(), input_);
     recorded_ = 0;
+    if (options_.record.empty()) return;
+    recorded_ids_ = simulation_.scene().objects();
+    RecordingHeader header;
+    header.time_step = input_.simulation.time_step;
+    header.scene = input_.simulation.scene;
+    header.scene_file = input_.scene_text;
+    for (std::size_t i = 0; i < recorded_ids_.size(); ++i)
+      header.objects.push_back(cli::recorded_object(recorded_ids_[i], input_.objects[i]));
+    recorder_.emplace(options_.record, header);
   }
 
   /// A file with some frames replaces the one before, so that the disk does not fill.
   void record(const DetectResult& result) {
     if (!recorder_) return;
     if (frame_ % options_.row_every == 0) check_disk();
-    recorder_->add(
-        simulation_.time(), [this](ObjectId object) { return simulation_.positions(object); }, result);
+    positions_.clear();
+    for (const ObjectId id : recorded_ids_) positions_.push_back(simulation_.positions(id));
+    recorder_->add(simulation_.time(), positions_, result);
     if (++recorded_ < options_.record_frames) return;
     end_recording();
     begin_recording();
@@ -238,7 +247,9 @@ class Soak {
   Simulation simulation_;
   std::vector<ObjectId> ids_;  // in the order of the input
   fuzz::EventLedgers ledgers_;
-  std::optional<cli::FrameRecorder> recorder_;
+  std::optional<Recorder> recorder_;
+  std::vector<ObjectId> recorded_ids_;
+  std::vector<std::span<const Vec3d>> positions_;
   Clock::time_point start_ = Clock::now();
   std::uint64_t frame_ = 0, events_ = 0, checked_ = 0, replaced_ = 0;
   std::uint64_t recorded_ = 0, recordings_ = 0;  // frames in the present file, and complete files

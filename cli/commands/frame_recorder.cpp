@@ -6,6 +6,14 @@
 #include <utility>
 
 namespace supple::cli {
+
+RecordedObject recorded_object(ObjectId id, const InputObject& object) {
+  ObjectOptions options = object.options;
+  options.edges.insert(options.edges.end(), object.mesh.edges.begin(), object.mesh.edges.end());
+  options.points.insert(options.points.end(), object.mesh.points.begin(), object.mesh.points.end());
+  return {id, std::move(options), object.mesh.positions, object.mesh.triangles};
+}
+
 namespace {
 
 RecordingHeader header_of(const Input& input, const MovingObjects& objects, int own_rank) {
@@ -21,10 +29,7 @@ RecordingHeader header_of(const Input& input, const MovingObjects& objects, int 
       header.objects.push_back({{i}, object.options, {}, {}, elsewhere});
       continue;
     }
-    ObjectOptions options = object.options;
-    options.edges.insert(options.edges.end(), object.mesh.edges.begin(), object.mesh.edges.end());
-    options.points.insert(options.points.end(), object.mesh.points.begin(), object.mesh.points.end());
-    header.objects.push_back({{i}, std::move(options), object.mesh.positions, object.mesh.triangles});
+    header.objects.push_back(recorded_object({i}, object));
   }
   return header;
 }

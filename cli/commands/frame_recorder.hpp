@@ -11,6 +11,9 @@
 
 namespace supple::cli {
 
+/// An object of the input, for the header of a recording.
+RecordedObject recorded_object(ObjectId id, const InputObject& object);
+
 /// Records a simulation frame by frame. Each rank writes the objects that it moves. All calls but `add` are
 /// collective.
 class FrameRecorder {
