@@ -76,9 +76,7 @@ void WholeScene::add(ObjectId id, const SavedObject& saved) {
     world_.set_static(own, saved.options.is_static);
     slots_.emplace(id, own.index);
   });
-  Numbers& numbers = numbers_.emplace_back(Numbers{id, saved.faces, saved.vertices});
-  numbers.faces.shrink_to_fit();
-  numbers.vertices.shrink_to_fit();
+  numbers_.push_back({id, saved.faces, saved.vertices});
 }
 
 void WholeScene::set_filter(const PairFilter& filter) {
@@ -108,7 +106,7 @@ void WholeScene::renumber(FoundLists& found) const {
   }
 }
 
-/// Calls `visit(reports' list)` for each list of differences.
+/// Calls `visit(member)` for each list of differences.
 template <class Visit>
 void for_each_differences(const Visit& visit) {
   visit(&VerifyReport::differences);

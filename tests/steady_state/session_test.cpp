@@ -114,7 +114,7 @@ TEST(SteadyStateSession, NoAllocationsInFramesOfARecording) {
     SceneView show = waves();
     show.simulation.scene.contacts = contacts;
     show.frames = std::make_shared<WaveFrames>(show);
-    expect_no_allocations(play(std::move(show), {R"({"do": "loop", "on": true})"}));
+    expect_no_allocations(play(std::move(show), {R"({"do": "loop", "on": true})", R"({"do": "play"})"}));
   }
 }
 
