@@ -115,6 +115,18 @@ void for_each_differences(const Visit& visit) {
   visit(&VerifyReport::penetration_differences);
 }
 
+/// All differences of two objects are from one rank, in their order, which stays.
+template <class Record>
+void sort_by_pairs(std::vector<Record>& records) {
+  std::map<std::pair<ObjectId, ObjectId>, std::vector<Record>> by_pair;
+  for (const Record& record : records)
+    by_pair[std::minmax(record.object_a, record.object_b)].push_back(record);
+  records.clear();
+  for (const auto& [pair, of_pair] : by_pair) {
+    for (const Record& record : of_pair) records.push_back(record);
+  }
+}
+
 template <class Visit>
 void for_each_count(const Visit& visit) {
   for (const auto count : {&VerifyReport::triangle_pairs_checked, &VerifyReport::intersecting_pairs,
@@ -185,13 +197,7 @@ VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) 
       report.stopped = from.get<bool>() || report.stopped;
       for_each_differences([&](auto differences) { from.append_all(report.*differences); });
     });
-    // All differences of two objects are from one rank, in their order.
-    for_each_differences([&](auto differences) {
-      std::stable_sort((report.*differences).begin(), (report.*differences).end(),
-                       [](const auto& p, const auto& q) {
-                         return std::minmax(p.object_a, p.object_b) < std::minmax(q.object_a, q.object_b);
-                       });
-    });
+    for_each_differences([&](auto differences) { sort_by_pairs(report.*differences); });
   });
   return report;
 }
