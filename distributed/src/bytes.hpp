@@ -22,7 +22,10 @@ class Writer {
 
   template <Plain Value>
   void put(const Value& value) {
-    append(&value, sizeof value);
+    // Not `append`, where g++ 12 warns of a write that cannot happen.
+    const std::size_t first = bytes_.size();
+    bytes_.resize(first + sizeof value);
+    std::memcpy(bytes_.data() + first, &value, sizeof value);
   }
   /// The number of values, then the values.
   template <Plain Value>

@@ -157,7 +157,7 @@ class DistributedScene::Implementation {
   Detection detection_;
   StepSearch step_search_;
   Outbox outbox_;
-  std::vector<std::byte> wide_units_;  // as messages to all ranks
+  std::vector<std::byte> to_all_;  // a message
   Inbox inbox_;
   // What a step computes.
   Question question_;

@@ -134,14 +134,14 @@ void DistributedScene::Implementation::send_unit(const Unit& unit, const std::ve
     to.put_all(homes);
   };
   const std::span<const int> meets = regions_.ranks_of(unit.box);
-  if (is_wide(meets)) return put(Writer(wide_units_));
+  if (is_wide(meets)) return put(Writer(to_all_));
   for (const int rank : meets) put(outbox_.to(rank));
 }
 
 /// Sends the boxes of clusters, and those of whole objects from their first homes, grown for the search.
 void DistributedScene::Implementation::send_units() {
   outbox_.clear();
-  wide_units_.clear();
+  to_all_.clear();
   stats.clusters = 0;
   for (auto& [id, object] : homes_) {
     const ObjectOptions& of = object.options;
@@ -342,15 +342,15 @@ void DistributedScene::Implementation::exchange_units() {
   });
   if (has_parts_) {
     outbox_.clear();
-    wide_units_.clear();
+    to_all_.clear();
     for (const auto& [id, object] : homes_) {
       if (object.first_home == ranks.rank()) continue;
-      Writer to = object.is_wide ? Writer(wide_units_) : outbox_.to(object.first_home);
+      Writer to = object.is_wide ? Writer(to_all_) : outbox_.to(object.first_home);
       to.put(id);
       to.put(object.box);
     }
     ranks.exchange(outbox_, inbox_);
-    ranks.share(wide_units_, wide);
+    ranks.share(to_all_, wide);
     for (const Inbox* const boxes : {&std::as_const(inbox_), &std::as_const(wide)}) {
       boxes->for_each([&](Reader& from, int) {
         while (!from.is_done()) {
@@ -364,7 +364,7 @@ void DistributedScene::Implementation::exchange_units() {
   divide_space();
   ranks.together([&] { send_units(); });
   ranks.exchange(outbox_, inbox_);
-  ranks.share(wide_units_, wide);
+  ranks.share(to_all_, wide);
   ranks.together([&] { read_units(wide); });
 }
 

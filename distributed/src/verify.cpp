@@ -121,9 +121,9 @@ void sort_by_pairs(std::vector<Record>& records) {
   std::map<std::pair<ObjectId, ObjectId>, std::vector<Record>> by_pair;
   for (const Record& record : records)
     by_pair[std::minmax(record.object_a, record.object_b)].push_back(record);
-  records.clear();
+  std::size_t next = 0;
   for (const auto& [pair, of_pair] : by_pair) {
-    for (const Record& record : of_pair) records.push_back(record);
+    for (const Record& record : of_pair) records[next++] = record;
   }
 }
 
@@ -145,9 +145,9 @@ VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) 
     if (question_.contacts == ContactKinds::none)
       fail("verify: the last detect searched no contacts, so there is nothing to compare");
   });
-  std::vector<std::byte> own;
   ranks.together([&] {
-    Writer to(own);
+    to_all_.clear();
+    Writer to(to_all_);
     to.put<std::uint64_t>(homes_.size());
     for (const auto& [id, home] : homes_) {
       std::vector<std::byte> bytes;
@@ -158,9 +158,8 @@ VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) 
     }
     lists_.write(to);
   });
-  ranks.share(own, inbox_);
+  ranks.share(to_all_, inbox_);
   VerifyReport report;
-  std::vector<std::byte> of_report;
   ranks.together([&] {
     std::map<ObjectId, std::vector<std::span<const std::byte>>> parts;
     FoundLists found;
@@ -180,7 +179,8 @@ VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) 
     found.list(result);
     report = supple::verify(scene.world(), question_, result, limits,
                             {static_cast<std::size_t>(ranks.rank()), static_cast<std::size_t>(ranks.size())});
-    Writer to(of_report);
+    to_all_.clear();
+    Writer to(to_all_);
     for_each_count([&](auto count) { to.put(report.*count); });
     to.put(report.stopped);
     for_each_differences([&](auto differences) {
@@ -189,7 +189,7 @@ VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) 
       to.put_all(report.*differences);
     });
   });
-  ranks.share(of_report, inbox_);
+  ranks.share(to_all_, inbox_);
   ranks.together([&] {
     report = {};
     inbox_.for_each([&](Reader& from, int) {
