@@ -483,6 +483,8 @@ async function wrongValuesAreRefused(stage) {
 async function waitsForTheFirstFrame(stage) {
   const program = await stage.program(join(scenes, "cloth_over_ball.toml"));
   const page = await stage.page();
+  // Without frames of animation, on which `until` would wait.
+  const wait = (condition) => page.waitForFunction(condition, null, { polling: 20 });
   await page.addInitScript(() => {
     const request = window.requestAnimationFrame.bind(window);
     let held = [];
@@ -495,13 +497,13 @@ async function waitsForTheFirstFrame(stage) {
     window.steps = [];
   });
   await page.goto(program.address);
-  await until(page, () => window.supple?.status.state === "connected");
+  await wait(() => window.supple?.status.state === "connected");
   await page.evaluate(() => {
     supple.model.on("frame", ({ text }) => steps.push(text.step));
     // What `giveCredit` of a page that draws does: so the first frame comes, but is not drawn.
     supple.client.giveCredit();
   });
-  await until(page, () => steps.length > 0);
+  await wait(() => steps.length > 0);
   const asks = await page.evaluate(async () => {
     const before = performance.now();
     let count = 0;
