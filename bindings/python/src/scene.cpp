@@ -11,7 +11,6 @@
 #include "options.hpp"
 #include "records.hpp"
 #include "shared_calls.hpp"
-#include "supple/difference_descriptions.hpp"
 
 namespace supple::python {
 namespace {

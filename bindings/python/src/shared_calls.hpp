@@ -6,6 +6,7 @@
 #include "calls.hpp"
 #include "records.hpp"
 #include "scene.hpp"
+#include "supple/difference_descriptions.hpp"
 
 namespace supple::python {
 

@@ -133,7 +133,7 @@ TEST_F(WatchedProgram, BudgetLimitsFramesAndStatisticsHaveAllSteps) {
   run(1);
   ASSERT_TRUE(until([&] { return frames_.size() == 1 && !is_running_; }));
   scene_.set_observer(
-      [this, gate = gate_](const Scene& scene, const DetectRequest& request) { gate->pass(scene, request); });
+      [gate = gate_](const Scene& scene, const DetectRequest& request) { gate->pass(scene, request); });
   page_->session.advance(0);
   give_credit();
   turn();
