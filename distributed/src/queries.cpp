@@ -102,6 +102,7 @@ class DistributedScene::Implementation::SeenClusters {
 
   /// A distance from the point, at most `radius`, within which a triangle is.
   double bound(const Vec3d& point, double radius) const {
+    if (tree_.empty()) return radius;  // which `nearest` does not take
     // By ascending distance of the boxes.
     for (auto near =
              tree_.qbegin(geometry::index::nearest(tree_point(point), static_cast<unsigned>(tree_.size())));
