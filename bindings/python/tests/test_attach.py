@@ -220,7 +220,8 @@ def test_examples_of_the_document(monkeypatch):
 
 
 PAUSED = """
-import supple, sys
+import signal, supple
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 scene = supple.Scene()
 scene.add(supple.make_icosphere(2))
 view = supple.attach(scene, open=False, wait_for_page=True)
