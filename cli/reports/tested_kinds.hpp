@@ -28,7 +28,7 @@ class TestedKinds {
   std::string advice_for_one_object(ContactKinds kind) const;
 
   const Input& input_;
-  // Of the meshes, which the input may lose during a run.
+  // Facts of the meshes. The input may lose the meshes during a run.
   bool are_frames_ = false;        ///< several meshes with the same triangles
   bool has_lines_ = false;         ///< edges or points of no triangle
   bool has_one_triangle_ = false;  ///< all objects together have one triangle that can touch something

@@ -119,7 +119,7 @@ double Gate::seconds_in_steps() const {
   return seconds_in_steps_;
 }
 
-// Of the session.
+// The thread of the session calls these functions.
 
 void Gate::request() {
   const std::lock_guard lock(mutex_);

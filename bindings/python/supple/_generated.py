@@ -390,7 +390,7 @@ CONTRACTS = {
     'DistributedScene::stats':
         'What this rank did in the last collective call.',
     'DistributedScene::verify':
-        'As `Scene.verify` of the last call, which must have been `detect`; the report is the same on all ranks, which share the pairs of objects. It takes the objects anew from the ranks that added them, so it also verifies what was sent. Each rank needs memory for the whole scene.',
+        'As `Scene.verify`: the last collective call must be `detect`. The ranks share the pairs of objects, and all of them get the report. Each rank reads all objects again from the ranks that added them, so the call also verifies the messages of `detect`. Each rank needs memory for the whole scene.',
     'ElementVertices::begin':
         'See `ElementVertices::begin` in supple/contact.hpp.',
     'ElementVertices::end':

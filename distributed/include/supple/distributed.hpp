@@ -134,9 +134,9 @@ class DistributedScene {
   /// statistics are sums over all ranks, its times those of the slowest rank. A stop on one rank stops the
   /// call on all of them. Requests with `max_contacts`, manifolds or first contacts of elements are errors.
   const DetectResult& detect(const DetectRequest& request = {});
-  /// As `Scene::verify` of the last call, which must have been `detect`; the report is the same on all ranks,
-  /// which share the pairs of objects. It takes the objects anew from the ranks that added them, so it also
-  /// verifies what was sent. Each rank needs memory for the whole scene.
+  /// As `Scene::verify`: the last collective call must be `detect`. The ranks share the pairs of objects, and
+  /// all of them get the report. Each rank reads all objects again from the ranks that added them, so the call
+  /// also verifies the messages of `detect`. Each rank needs memory for the whole scene.
   VerifyReport verify(const CallLimits& limits = {});
   /// As `Scene::earliest_impact`; the same on all ranks.
   std::optional<ContinuousContact> earliest_impact();

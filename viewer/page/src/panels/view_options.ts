@@ -1,10 +1,11 @@
 /** How the scene is drawn: shading, x-ray, a slice, the upward axis. */
 import type { Model } from "../model";
-import { h } from "./dom";
+import { MOST_SMOOTH } from "../view/surfaces";
+import { h, readable } from "./dom";
 
 export class ViewOptions {
   readonly element: HTMLElement;
-  private readonly flat = h("p", { class: "hint", role: "status", hidden: true }, "Flat for now: more than 300,000 triangles move.");
+  private readonly flat = h("p", { class: "hint", role: "status", hidden: true }, `Flat for now: more than ${readable(MOST_SMOOTH)} triangles move.`);
   private readonly shown: (() => void)[] = [];
 
   constructor(private readonly model: Model) {

@@ -1,6 +1,6 @@
 /**
  * A soft shadow on the floor: the surfaces seen from below, darker where they are near the floor, and
- * blurred. It is drawn anew only when something has moved.
+ * blurred. The page draws it again only when something has moved.
  */
 import * as THREE from "three";
 import { FullScreenQuad } from "three/addons/postprocessing/Pass.js";
