@@ -135,8 +135,8 @@ class DistributedScene {
   /// call on all of them. Requests with `max_contacts`, manifolds or first contacts of elements are errors.
   const DetectResult& detect(const DetectRequest& request = {});
   /// As `Scene::verify`: the last collective call must be `detect`. The ranks share the pairs of objects, and
-  /// all of them get the report. Each rank reads all objects again from the ranks that added them, so the call
-  /// also verifies the messages of `detect`. Each rank needs memory for the whole scene.
+  /// all of them get the report. Each rank reads all objects again from the ranks that added them, so the
+  /// call also verifies the messages of `detect`. Each rank needs memory for the whole scene.
   VerifyReport verify(const CallLimits& limits = {});
   /// As `Scene::earliest_impact`; the same on all ranks.
   std::optional<ContinuousContact> earliest_impact();
