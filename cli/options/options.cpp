@@ -173,6 +173,19 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
            "Memory in MB that commands of the page may add to that of the scene as opened, as estimated "
            "for its objects, vertices and triangles (default: 2000)")),
        is_served, no_export});
+  dependences.push_back(
+      {group(add_whole(
+           *app, "--history", ValueRange::from(0, 1'000'000'000),
+           [&](std::uint64_t megabytes) {
+             options.budget.history_bytes = 1e6 * static_cast<double>(megabytes);
+           },
+           "Memory in MB for the positions of the last steps of a simulation, which the page can "
+           "go back to; 0 keeps none (default: 500)")),
+       is_served, no_export});
+  dependences.push_back({group(app->add_flag("--follow", options.follow,
+                                             "Show the frames of a recording that is still being written as "
+                                             "they are saved")),
+                         is_served, no_export});
   group(app->add_option("--export", options.page_file,
                         "Write one HTML file instead of starting a server: any browser can show it, and the "
                         "detection runs in the page")

@@ -90,6 +90,7 @@ struct ViewOptions : MethodOptions {
   std::string token_file;  ///< empty: a new token in each run
   bool open_browser = true;
   viewer::MemoryBudget budget;
+  bool follow = false;    ///< a recording that is still being written
   std::string page_file;  ///< file to write instead of serving; empty: serve
 };
 

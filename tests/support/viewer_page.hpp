@@ -23,6 +23,7 @@ namespace supple::viewer {
 using Json = nlohmann::json;
 /// Types of the elements in sections.
 using Pair = std::array<std::uint32_t, 2>;
+using StepPair = std::array<std::uint32_t, 3>;
 using Ids = std::array<std::uint32_t, 8>;
 using Row = std::array<float, 8>;
 

@@ -5,6 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "supple/error.hpp"
+#include "supple/option_descriptions.hpp"
+
 namespace supple::viewer {
 namespace {
 
@@ -85,6 +88,19 @@ Break not_finite(const Scene& scene) {
 }
 
 }  // namespace
+
+void check(const BreakOptions& breaks, ContactKinds detected) {
+  const ContactKinds kinds = with_included(detected);
+  const auto need = [&](bool is_wanted, const char* event, ContactKinds one, ContactKinds other) {
+    if (!is_wanted || contains(kinds, one) || contains(kinds, other)) return;
+    throw Error(std::string(event) + ": the scene does not detect " + word_of(one) +
+                ", so this never happens; add it to the contacts of the scene");
+  };
+  using enum ContactKinds;
+  need(breaks.contact_begin, "contact_begin", intersection, continuous);
+  need(breaks.intersection, "intersection", intersection, intersection);
+  need(breaks.depth_above.has_value(), "depth_above", penetration, penetration);
+}
 
 std::optional<Break> BreakFinder::find(const Scene& scene, const BreakOptions& breaks) {
   const DetectResult& result = scene.result();

@@ -7,6 +7,9 @@
 
 namespace supple::viewer {
 
+/// Throws `Error` when an event can never happen, because its kind of contacts is not detected.
+void check(const BreakOptions& breaks, ContactKinds detected);
+
 /// Finds the events that pause a program.
 class BreakFinder {
  public:

@@ -51,7 +51,11 @@ void Gate::pass(const Scene& scene, const DetectRequest& request) {
 
 void Gate::remember(const DetectResult& result) {
   if (std::ssize(rows_) >= most_rows) rows_.erase(rows_.begin(), rows_.begin() + most_rows / 2);
-  rows_.push_back({result.step, result.stats});
+  const auto copy = [](const PairEvents& events) {
+    return StepRow::Events{{events.begin.begin(), events.begin.end()},
+                           {events.end.begin(), events.end.end()}};
+  };
+  rows_.push_back({result.step, result.stats, copy(result.contact_events), copy(result.volume_events)});
 }
 
 void Gate::wait(const Scene& scene, const CallLimits& limits) {
@@ -178,6 +182,7 @@ void Gate::step(std::uint64_t count) {
 
 void Gate::set_breaks(const BreakOptions& breaks) {
   const std::lock_guard lock(mutex_);
+  if (state_.step_count > 0) check(breaks, step_.contacts);
   state_.breaks = breaks;
   finder_.forget();
 }

@@ -29,7 +29,7 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::shared_ptr<Gate> gate_of(const AttachOptions& options, std::function<void()> wake) {
+std::shared_ptr<Gate> gate_of(const Scene& scene, const AttachOptions& options, std::function<void()> wake) {
   for_each_leaf(
       [&]<class Struct, class Value>(const Field<Struct, Value>& field, const Value& value) {
         if constexpr (std::is_same_v<Value, double>) {
@@ -39,6 +39,7 @@ std::shared_ptr<Gate> gate_of(const AttachOptions& options, std::function<void()
         }
       },
       options);
+  check(options.breaks, scene.options().contacts);
   if (embedded_page().empty())
     fail(
         "attach: the library was built without the page of the viewer; configure the build with "
@@ -53,9 +54,10 @@ class View::Implementation {
  public:
   Implementation(const Scene& scene, const AttachOptions& options)
       : scene_(&scene),
-        gate_(gate_of(options, [this] { wake(); })),
+        gate_(gate_of(scene, options, [this] { wake(); })),
         server_(std::make_unique<Server>(
-            Session(view_of_program(scene, gate_, options.title.empty() ? "my program" : options.title)),
+            Session(view_of_program(scene, gate_, options.title.empty() ? "my program" : options.title),
+                    {.history_bytes = options.history_bytes}),
             ServerOptions{.address = options.address,
                           .port = options.port,
                           .page = embedded_page(),

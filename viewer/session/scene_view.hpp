@@ -51,6 +51,19 @@ class Frames {
   virtual void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const = 0;
   /// May have no rows; the page then plots the frames it has received.
   virtual const Series& series() const = 0;
+
+  /// The number of the step that a frame shows.
+  virtual std::uint64_t step(std::uint64_t frame) const { return frame; }
+  /// The last frame not after a step; 0 when there is none.
+  virtual std::uint64_t frame_of(std::uint64_t step) const { return step; }
+  /// Whether a frame shows the step after that of the frame before, so that continuous contacts between the
+  /// two can be found.
+  virtual bool follows(std::uint64_t frame) const { return frame > 0; }
+  /// Whether frames are still being added.
+  virtual bool is_growing() const { return false; }
+  /// Looks for frames that were added since the last call; returns whether there are any. Throws `Error` when
+  /// they do not continue these frames.
+  virtual bool refresh() { return false; }
 };
 
 class Program;
@@ -60,8 +73,8 @@ struct SceneView {
   std::string title{};
   SimulationOptions simulation{};
   std::vector<ViewedObject> objects{};
-  std::shared_ptr<const Frames> frames{};  ///< only of a recording
-  std::shared_ptr<Program> program{};      ///< only of a running program
+  std::shared_ptr<Frames> frames{};    ///< only of a recording
+  std::shared_ptr<Program> program{};  ///< only of a running program
 };
 
 }  // namespace supple::viewer

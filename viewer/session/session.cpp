@@ -26,6 +26,7 @@ void Session::Implementation::greet() {
 void Session::Implementation::leave() {
   ProgramSource* const source = stage_->program();
   if (source == nullptr) return;
+  look_at_present();
   source->leave();
   source->program().set_page(false);
 }
@@ -34,10 +35,10 @@ double Session::Implementation::advance(double seconds) {
   if (!is_greeted_ || has_ended_) return Player::idle_seconds;
   Player::Outcome outcome;
   auto failure = failure_of([&] {
+    if (RecordingSource* const recording = stage_->recording(); recording && recording->refresh())
+      owes_series_ = has_news_ = true;
     outcome = player_.advance(*stage_, seconds);
-    const Source& source = stage_->source();
-    if (outcome.changed && stage_->simulation() != nullptr)
-      packer_.add_step(source.step(), source.motion_seconds(), source.scene().result().stats);
+    if (outcome.changed) take_state();
     if (stage_->program() != nullptr) follow_program();
   });
   if (outcome.failure) failure = Failure{*outcome.failure};
@@ -52,6 +53,27 @@ double Session::Implementation::advance(double seconds) {
   }
   has_news_ = has_news_ || outcome.changed;
   return outcome.wait;
+}
+
+/// Takes what a step, or a way to or from the past, has changed.
+void Session::Implementation::take_state() {
+  const bool is_past = stage_->past() != nullptr;
+  if (is_past != is_past_) packer_.forget_positions();
+  if (is_past_ && !is_past && std::exchange(has_other_options_, false)) {
+    settings_ = {};  // a program has the options that it chose itself
+    owes_scene_ = true;
+  }
+  is_past_ = is_past;
+  if (is_past || stage_->simulation() == nullptr) return;
+  const Source& source = stage_->source();
+  packer_.add_step(source.step(), source.motion_seconds(), source.scene().result());
+  stage_->keep();
+}
+
+void Session::Implementation::look_at_present() {
+  if (stage_->past() == nullptr) return;
+  stage_->look_at_present();
+  take_state();
 }
 
 std::span<const std::byte> Session::Implementation::next_message(MessageWriter& message) {
@@ -87,9 +109,11 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
 
 /// Returns false on failure, and then drops the optional layers.
 bool Session::Implementation::pack_frame(MessageWriter& message) {
-  const FrameView frame{scene(),          stage_->source(),    layers_,
-                        stage_->center(), numbers_.generation, player_.playing(),
-                        player_.speed(),  player_.loop()};
+  FrameView frame{scene(),           stage_->source(), layers_,        stage_->center(),  numbers_.generation,
+                  player_.playing(), player_.speed(),  player_.loop(), player_.section(), stage_->range(),
+                  is_past_};
+  frame.has_path = !is_past_ || stage_->past()->has_path();
+  frame.is_recorded = stage_->recording() != nullptr;
   const auto failure = failure_of([&] { packer_.pack(frame, message); });
   if (!failure) return true;
   replies_.id.reset();

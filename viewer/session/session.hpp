@@ -10,9 +10,10 @@
 
 namespace supple::viewer {
 
-/// Memory in bytes that commands may add to that of the scene as it was opened (`estimated_memory`).
+/// Memory in bytes.
 struct MemoryBudget {
-  double bytes = 2e9;
+  double bytes = 2e9;          ///< that commands may add to the scene as it was opened (`estimated_memory`)
+  double history_bytes = 5e8;  ///< for the positions of the last steps; 0 keeps no steps
 };
 
 /// One viewer session (docs/protocol.md): takes commands, produces messages. It has no clock, no threads of

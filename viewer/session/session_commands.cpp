@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -80,7 +81,7 @@ void Session::Implementation::obey(const JsonValue& text) {
 
 /// Goes to the last requested frame, so that answers refer to it.
 void Session::Implementation::catch_up() {
-  if (!stage_->recording()) return;
+  if (!stage_->recording() && !player_.has_target()) return;
   const auto id = replies_.id;
   advance(0);
   replies_.id = id;
@@ -124,8 +125,9 @@ void Session::Implementation::pause(Arguments& arguments) {
 
 void Session::Implementation::step(Arguments& arguments) {
   constexpr std::int64_t most_steps = 1'000'000;
-  const std::int64_t fewest = stage_->recording() ? -most_steps : 1;
+  const std::int64_t fewest = stage_->recording() || stage_->history().count() > 0 ? -most_steps : 1;
   const auto count = arguments.integer("count", fewest, most_steps).value_or(1);
+  if (count == 0) arguments.must_be("count", "a number of steps other than 0");
   if (!arguments.check()) return;
   player_.step(*stage_, count);
   has_news_ = true;
@@ -141,18 +143,29 @@ void Session::Implementation::speed(Arguments& arguments) {
 
 void Session::Implementation::loop(Arguments& arguments) {
   const bool on = arguments.required("on", arguments.boolean("on"));
-  if (!is_of_recording(arguments) || !arguments.check()) return;
-  player_.set_loop(on);
+  const auto from = arguments.integer("from", 0, largest_count);
+  const auto to = arguments.integer("to", from.value_or(0), largest_count);
+  if (from.has_value() != to.has_value()) arguments.fail("from and to, the section, need each other");
+  if (!has_frames(arguments) || !arguments.check()) return;
+  std::optional<std::array<std::uint64_t, 2>> section;
+  if (from) section = {static_cast<std::uint64_t>(*from), static_cast<std::uint64_t>(*to)};
+  player_.set_loop(on, section);
   has_news_ = true;
 }
 
 void Session::Implementation::seek(Arguments& arguments) {
-  if (!is_of_recording(arguments)) return;
-  const auto count = static_cast<std::int64_t>(stage_->recording()->frame_count());
-  const auto frame =
-      arguments.required("frame", arguments.integer("frame", 0, std::max<std::int64_t>(count, 1) - 1));
+  if (!has_frames(arguments)) return;
+  const auto [first, last] = stage_->range();
+  const auto step = arguments.required(
+      "frame", arguments.integer("frame", static_cast<std::int64_t>(first), static_cast<std::int64_t>(last)));
   if (!arguments.check()) return;
-  player_.seek(static_cast<std::uint64_t>(frame));
+  if (stage_->recording() != nullptr) return player_.seek(static_cast<std::uint64_t>(step));
+  if (SimulationSource* const simulation = stage_->simulation(); simulation && simulation->holds()) {
+    simulation->release();
+    take_state();
+  }
+  player_.pause(*stage_);
+  player_.seek(stage_->history().frame_of(static_cast<std::uint64_t>(step)));
 }
 
 void Session::Implementation::layers(Arguments& arguments) {
@@ -170,7 +183,9 @@ void Session::Implementation::reset(Arguments& arguments) {
 }
 
 void Session::Implementation::set(Arguments& arguments) {
-  if (stage_->program() != nullptr) return arguments.fail("the program chooses its options itself");
+  if (stage_->program() != nullptr && stage_->past() == nullptr)
+    return arguments.fail(
+        "the program chooses its options itself; in the past of a program you can choose others");
   const Settings settings =
       read_settings(settings_, show_.simulation.scene, stage_->simulation() != nullptr, arguments);
   if (!arguments.check() || !fits_in_memory(show_, settings, most_memory_, arguments)) return;
@@ -180,10 +195,11 @@ void Session::Implementation::set(Arguments& arguments) {
 /// Changes how contacts are found. The objects stay where they are: a simulation keeps its state, and a
 /// recording its frame. On failure nothing changes.
 void Session::Implementation::change(const Settings& settings) {
-  if (stage_->simulation() != nullptr)
-    stage_->set_detection(show_, settings);
+  if (stage_->recording() != nullptr)
+    stage_ = make_stage(settings, stage_->recording()->frame());
   else
-    stage_ = std::make_unique<Stage>(show_, settings, stage_->recording()->step());
+    stage_->set_detection(show_, settings);
+  has_other_options_ = stage_->program() != nullptr;
   settings_ = settings;
   owes_scene_ = true;
 }
@@ -191,33 +207,39 @@ void Session::Implementation::change(const Settings& settings) {
 /// Takes what a program did since the last call. When it has added or removed objects, the page gets the
 /// scene again.
 void Session::Implementation::follow_program() {
-  for (const StepRow& row : stage_->program()->program().take_rows())
-    packer_.add_step(row.step, 0, row.stats);
+  ProgramSource& source = *stage_->program();
+  for (const StepRow& row : source.program().take_rows()) packer_.add_step(row);
   if (!stage_->is_open()) return;
-  if (auto changed = stage_->program()->changed_view()) {
-    show_ = std::move(*changed);
-    stage_ = std::make_unique<Stage>(show_, settings_);
-    stage_->program()->advance();
-    keep_objects(layers_, scene().objects.size());
-    owes_scene_ = true;
+  if (stage_->past() == nullptr) {
+    if (auto changed = source.changed_view()) {
+      show_ = std::move(*changed);
+      stage_ = make_stage(settings_);
+      stage_->program()->advance();
+      keep_objects(layers_, scene().objects.size());
+      owes_scene_ = true;
+    }
+    stage_->keep();
   }
   for (const JsonValue& text : std::exchange(deferred_, {})) obey(text);
 }
 
 /// Starts again at the first step. On failure nothing changes.
 void Session::Implementation::restart(const Settings& settings) {
-  auto stage = std::make_unique<Stage>(show_, settings);
-  stage_ = std::move(stage);
+  stage_ = make_stage(settings);
+  is_past_ = false;
   settings_ = settings;
   player_.restart();
   keep_objects(layers_, scene().objects.size());
-  packer_.forget();
+  packer_.restart();
+  take_state();
   ++numbers_.run;
   owes_scene_ = true;
 }
 
 void Session::Implementation::grab(Arguments& arguments) {
   if (!is_of_simulation(arguments)) return;
+  if (stage_->past() != nullptr)
+    return arguments.fail("the past cannot be pulled; go to the newest step first");
   const std::uint32_t object = read_object("object", scene(), arguments);
   const std::uint32_t vertex = arguments.required("vertex", read_vertex(object, scene(), arguments));
   const auto radius = arguments.number("radius", 0, largest);
@@ -236,7 +258,9 @@ void Session::Implementation::drag(Arguments& arguments) {
 
 void Session::Implementation::release(Arguments& arguments) {
   if (!is_of_simulation(arguments) || !arguments.check()) return;
+  if (!stage_->simulation()->holds()) return;
   stage_->simulation()->release();
+  take_state();
   has_news_ = true;
 }
 
@@ -270,9 +294,10 @@ void Session::Implementation::node_pairs(Arguments& arguments) {
   if (arguments.check()) answer_node_pairs(stage_->source(), a, b, replies_.json);
 }
 
-bool Session::Implementation::is_of_recording(Arguments& arguments) const {
-  if (!stage_->recording()) arguments.fail("this is not a recording; only a recording can do that");
-  return stage_->recording() != nullptr;
+bool Session::Implementation::has_frames(Arguments& arguments) const {
+  if (stage_->recording() != nullptr || stage_->history().count() > 0) return true;
+  arguments.fail("no steps are kept, because the history has no memory");
+  return false;
 }
 
 bool Session::Implementation::is_of_simulation(Arguments& arguments) const {

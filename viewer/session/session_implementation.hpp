@@ -28,8 +28,14 @@ class Session::Implementation {
   Implementation(SceneView show, MemoryBudget budget)
       : show_(std::move(show)),
         most_memory_(estimated_memory(show_, settings_) + budget.bytes),
-        stage_(std::make_unique<Stage>(show_, settings_)) {
+        history_bytes_(budget.history_bytes),
+        stage_(make_stage(settings_)) {
+    take_state();
     if (stage_->simulation() != nullptr && stage_->has_motion()) player_.play(*stage_);
+    if (RecordingSource* const recording = stage_->recording(); recording && recording->is_growing()) {
+      player_.seek(recording->last_frame());
+      player_.play(*stage_);
+    }
   }
 
   void greet();
@@ -73,10 +79,15 @@ class Session::Implementation {
   void program(Arguments& arguments);
 
   const SceneView& scene() const { return stage_->show(); }
+  std::unique_ptr<Stage> make_stage(const Settings& settings, std::uint64_t frame = 0) const {
+    return std::make_unique<Stage>(show_, settings, history_bytes_, frame);
+  }
+  void take_state();
+  void look_at_present();
   void restart(const Settings& settings);
   void change(const Settings& settings);
   void follow_program();
-  bool is_of_recording(Arguments& arguments) const;
+  bool has_frames(Arguments& arguments) const;
   bool is_of_simulation(Arguments& arguments) const;
   bool is_of_program(Arguments& arguments) const;
 
@@ -85,7 +96,7 @@ class Session::Implementation {
 
   SceneView show_;
   Settings settings_;
-  double most_memory_;  ///< in bytes
+  double most_memory_, history_bytes_;
   std::unique_ptr<Stage> stage_;
   Player player_;
   Layers layers_;
@@ -94,7 +105,9 @@ class Session::Implementation {
   bool has_ended_ = false;
   SceneNumbers numbers_;
   bool owes_scene_ = false, owes_series_ = false, has_news_ = false;
-  bool has_sent_frame_ = false;  // of this scene message
+  bool has_sent_frame_ = false;     // of this scene message
+  bool is_past_ = false;            // what the page has is of the past
+  bool has_other_options_ = false;  // the past of a program, than the program
   std::int64_t credit_ = 0;
   Replies replies_;
   std::vector<JsonValue> deferred_;  // commands that wait until the scene of the program can be read

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -99,9 +100,9 @@ TEST_F(WatchedProgram, SceneMessageNeedsNoStep) {
   ASSERT_EQ(scenes_.size(), 1u);
   const Json& scene = scenes_[0].json;
   EXPECT_EQ(scene["source"], "program");
-  EXPECT_EQ(scene["can"], Json::parse(R"(["play", "break"])"));
+  EXPECT_EQ(scene["can"], Json::parse(R"(["play", "break", "set"])"));
   EXPECT_EQ(scene["objects"][1]["name"], "right");
-  EXPECT_EQ(scene["settings"].size(), 0u);
+  EXPECT_GT(scene["settings"].size(), 0u) << "for its past";
   EXPECT_EQ(scene["breaks"][0], Json::parse(R"({"key": "contact_begin", "doc": "Two objects begin to touch",
                                               "unit": "", "kind": "truth", "value": false})"));
   EXPECT_EQ(scene["break_objects"], Json::parse(R"(["", ""])"));
@@ -224,6 +225,105 @@ TEST_F(WatchedProgram, BreakSaysWhatAndWhere) {
   say({{"do", "play"}});
   EXPECT_TRUE(until([&] { return !is_running_; }));
   EXPECT_EQ(steps_taken_, 30);
+}
+
+TEST_F(WatchedProgram, RefusesABreakThatNeverHappens) {
+  attach();
+  turn();
+  give_credit();
+  run(1);
+  ASSERT_TRUE(until([&] { return !is_running_; }));
+  say({{"do", "break"}, {"depth_above", 0.1}});
+  ASSERT_TRUE(until([&] { return !failures_.empty(); }));
+  EXPECT_NE(failures_[0].json["message"].get<std::string>().find("does not detect penetration"),
+            std::string::npos);
+  EXPECT_THROW(gate_->set_breaks({.depth_above = 1}), Error);
+  EXPECT_NO_THROW(gate_->set_breaks({.contact_begin = true, .intersection = true}));
+}
+
+/// The past of a program is detected again from the positions that the program had.
+TEST_F(WatchedProgram, ShowsItsPast) {
+  attach({.max_slowdown = 1e9});
+  turn();
+  say({{"do", "pause"}});
+  give_credit();
+  turn();
+  run(40);
+  ASSERT_TRUE(until([&] { return !frames_.empty(); }));
+  for (std::uint64_t step = 1; step < 25; ++step) {
+    give_credit();
+    say({{"do", "step"}});
+    ASSERT_TRUE(until([&] { return last_step() == step; }));
+  }
+  std::map<std::uint64_t, ViewerMessage> live;
+  for (const ViewerMessage& frame : frames_) live.emplace(frame.json["step"].get<std::uint64_t>(), frame);
+  EXPECT_GT(live.at(24).section(34).count, 0u);
+  const auto look_at = [&](std::uint64_t step) {
+    frames_.clear();
+    give_credit();
+    say({{"do", "seek"}, {"frame", step}});
+    ASSERT_TRUE(until([&] { return !frames_.empty() && last_step() == step; }));
+  };
+  for (const std::uint64_t step : {3u, 22u, 15u}) {
+    look_at(step);
+    const ViewerMessage& past = frames_.back();
+    EXPECT_EQ(past.json["past"], true);
+    EXPECT_EQ(past.json["range"], Json({0, 24}));
+    for (const std::uint32_t tag : {33u, 34u, 35u}) {
+      ASSERT_EQ(past.has(tag), live.at(step).has(tag)) << tag;
+      if (past.has(tag)) {
+        EXPECT_EQ(past.section(tag).data, live.at(step).section(tag).data) << tag;
+      }
+    }
+    EXPECT_EQ(past.section(32, 1).count, scene_.vertex_count(right_));
+  }
+  EXPECT_EQ(steps_taken_, 24) << "the program waits meanwhile";
+
+  scenes_.clear();
+  say({{"do", "set"}, {"bounding_volume", "sphere"}});
+  ASSERT_TRUE(until([&] { return !scenes_.empty(); }));
+  EXPECT_EQ(scenes_[0].json["bounding_volume"], "sphere");
+  EXPECT_TRUE(failures_.empty());
+  scenes_.clear();
+  say({{"do", "seek"}, {"frame", 24}});
+  ASSERT_TRUE(until([&] { return !scenes_.empty(); }));
+  EXPECT_EQ(scenes_[0].json["bounding_volume"], "aabb") << "the program has its own options";
+  say({{"do", "set"}, {"bounding_volume", "sphere"}});
+  ASSERT_TRUE(until([&] { return !failures_.empty(); }));
+
+  look_at(20);
+  give_credit();
+  say({{"do", "speed"}, {"factor", 0}});
+  say({{"do", "play"}});
+  EXPECT_TRUE(until([&] {
+    give_credit();
+    return !is_running_;
+  })) << "the past plays up to the present, and then the program goes on";
+  EXPECT_EQ(steps_taken_, 40);
+}
+
+TEST_F(WatchedProgram, EventsOfStepsWithoutAFrameArrive) {
+  attach();
+  turn();
+  run(60);  // the ball moves through the other one
+  ASSERT_TRUE(until([&] { return !is_running_; }));
+  run(1);
+  ASSERT_TRUE(until([&] {
+    give_credit();
+    return !is_running_;
+  }));
+  run(1);
+  ASSERT_TRUE(until([&] { return !is_running_ && !frames_.empty(); }));
+  std::vector<StepPair> begin, end;
+  for (const ViewerMessage& frame : frames_) {
+    for (const StepPair& event : frame.values<StepPair>(44)) begin.push_back(event);
+    for (const StepPair& event : frame.values<StepPair>(45)) end.push_back(event);
+  }
+  ASSERT_EQ(begin.size(), 1u);
+  ASSERT_EQ(end.size(), 1u);
+  EXPECT_GT(begin[0][0], 5u);
+  EXPECT_LT(begin[0][0], end[0][0]);
+  EXPECT_LT(end[0][0], 60u) << "no frame was sent of this step";
 }
 
 TEST_F(WatchedProgram, BreakFromTheProgramDoesNotWaitWithoutAPage) {

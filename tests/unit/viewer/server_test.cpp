@@ -345,7 +345,7 @@ class CountedFrames : public Frames {
 };
 
 TEST_F(ViewerServer, TimeStandsStillWhileNobodyLooks) {
-  const auto frames = std::make_shared<const CountedFrames>();
+  const auto frames = std::make_shared<CountedFrames>();
   SceneView show;
   show.objects.push_back({make_box({1, 1, 1}, 1), {}, {}});
   show.frames = frames;
@@ -451,7 +451,7 @@ class BrokenFrames : public Frames {
 TEST_F(ViewerServer, AnUnforeseenFailureEndsItWithTheReason) {
   SceneView show;
   show.objects.push_back({make_box({1, 1, 1}, 1), {}, {}});
-  show.frames = std::make_shared<const BrokenFrames>();
+  show.frames = std::make_shared<BrokenFrames>();
   start(std::move(show));
   PageClient client = connect();
   client.receive(Kind::scene);

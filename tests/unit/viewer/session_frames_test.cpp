@@ -142,9 +142,10 @@ TEST(ViewerFrames, EventsOfVolumesAndOfTheNarrowPhase) {
     if (step > 0) simulation.step();
     const DetectResult& result = simulation.scene().result();
     const auto expect = [&](std::uint32_t tag, std::span<const ObjectPair> pairs) {
-      std::vector<Pair> expected;
-      for (const ObjectPair& pair : pairs) expected.push_back({pair.a.index, pair.b.index});
-      EXPECT_EQ(frame.values<Pair>(tag), expected) << tag << " in step " << step;
+      std::vector<StepPair> expected;
+      for (const ObjectPair& pair : pairs)
+        expected.push_back({static_cast<std::uint32_t>(step), pair.a.index, pair.b.index});
+      EXPECT_EQ(frame.values<StepPair>(tag), expected) << tag << " in step " << step;
       return expected.size();
     };
     if (step > 0) {  // the frame before the layer had the volumes already
@@ -158,21 +159,48 @@ TEST(ViewerFrames, EventsOfVolumesAndOfTheNarrowPhase) {
   EXPECT_GT(leaves, 1u);
 }
 
-TEST(ViewerFrames, EventsAreThoseSinceTheLastFrame) {
-  TestPage page(touching_balls());
+/// A frame brings the events of every step since the last frame, as the library has them.
+TEST(ViewerFrames, EventsOfEveryStepArrive) {
+  const SceneView show = touching_balls();
+  Simulation simulation = simulation_of(show);
+  TestPage page(show);
   page.scene();
-  const ViewerMessage first = page.frame();
-  EXPECT_EQ(first.values<Pair>(44), (std::vector<Pair>{{0, 1}}));
-  EXPECT_TRUE(first.values<Pair>(45).empty());
-  // Ball 2 drifts into ball 1 over many steps; none of these frames is sent.
-  for (int i = 0; i < 100; ++i) page.session.advance(0.01);
-  const ViewerMessage later = page.frame();
-  EXPECT_EQ(later.values<Pair>(44), (std::vector<Pair>{{1, 2}}));
-  EXPECT_TRUE(page.frame_after_steps(1).values<Pair>(44).empty());
+  std::vector<StepPair> begin, end, expected_begin, expected_end;
+  const auto take = [](const ViewerMessage& frame, std::uint32_t tag, std::vector<StepPair>& events) {
+    const std::vector<StepPair> sent = frame.values<StepPair>(tag);
+    events.insert(events.end(), sent.begin(), sent.end());
+  };
+  const auto expect = [&](std::span<const ObjectPair> pairs, std::vector<StepPair>& events) {
+    for (const ObjectPair& pair : pairs)
+      events.push_back({static_cast<std::uint32_t>(simulation.step_count()), pair.a.index, pair.b.index});
+  };
+  const auto take_both = [&](const ViewerMessage& frame) {
+    take(frame, 44, begin);
+    take(frame, 45, end);
+  };
+  take_both(page.frame());
+  expect(simulation.scene().result().contact_events.begin, expected_begin);
+  // Ball 2 drifts through balls 1 and 0; most of these steps have no frame.
+  for (const int count : {1, 100, 3, 400, 500}) {
+    take_both(page.frame_after_steps(count));
+    for (int i = 0; i < count; ++i) {
+      const PairEvents& events = simulation.step().contact_events;
+      expect(events.begin, expected_begin);
+      expect(events.end, expected_end);
+    }
+  }
+  EXPECT_EQ(begin, expected_begin);
+  EXPECT_EQ(end, expected_end);
+  EXPECT_GT(begin.size(), 2u);
+  EXPECT_GT(end.size(), 1u);
+  page.session.greet();
+  page.scene();
+  const ViewerMessage again = page.frame();
+  EXPECT_EQ(again.values<StepPair>(44), expected_begin) << "a page that comes again gets all events";
   page.ask({{"do", "reset"}});
   page.drain();
-  EXPECT_EQ(page.frame_after_steps(1).values<Pair>(44), (std::vector<Pair>{{0, 1}}))
-      << "after a reset, the page knows of no pairs";
+  EXPECT_EQ(page.frame_after_steps(1).values<StepPair>(44), (std::vector<StepPair>{{0, 0, 1}}))
+      << "a new run has events of its own";
 }
 
 /// A frame brings the statistics of every step since the last frame, also of steps without a frame.

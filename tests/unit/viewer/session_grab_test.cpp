@@ -54,7 +54,7 @@ TEST(ViewerGrab, AnObjectWithoutMotionIsBentSmoothlyAndTouchesAtOnce) {
   EXPECT_EQ(bent.json["playing"], false);
   EXPECT_EQ(bent.json["step"], 0);
   EXPECT_GT(bent.section(34).count, 0u);
-  EXPECT_EQ(bent.values<Pair>(44), (std::vector<Pair>{{0, 1}}));
+  EXPECT_EQ(bent.values<StepPair>(44), (std::vector<StepPair>{{0, 0, 1}}));
   EXPECT_FALSE(bent.has(32, 1));
 
   const auto from = positions(before, 0), to = positions(bent, 0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../../support/viewer_page.hpp"
@@ -13,7 +14,7 @@ namespace supple::viewer {
 namespace {
 
 /// Frames in memory; some of them may be damaged.
-struct StoredFrames final : Frames {
+struct StoredFrames : Frames {
   std::vector<std::vector<std::vector<Vec3d>>> positions;  // by frame and object
   Series rows;
   std::vector<std::uint64_t> damaged;
@@ -25,6 +26,30 @@ struct StoredFrames final : Frames {
     std::copy(positions[frame][object].begin(), positions[frame][object].end(), to.begin());
   }
   const Series& series() const override { return rows; }
+};
+
+struct GrowingFrames final : StoredFrames {
+  std::vector<std::vector<std::vector<Vec3d>>> all;
+  std::vector<double> all_rows;
+  bool has_news = false;
+  std::string problem;
+
+  void show_first(std::size_t count) {
+    if (all.empty()) {
+      all = positions;
+      all_rows = rows.values;
+    }
+    positions.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+    rows.values.assign(all_rows.begin(),
+                       all_rows.begin() + static_cast<std::ptrdiff_t>(count * rows.names.size()));
+    has_news = true;
+  }
+  bool is_growing() const override { return problem.empty(); }
+  bool refresh() override {
+    if (!problem.empty() && !std::exchange(is_told, true)) throw Error(problem);
+    return std::exchange(has_news, false);
+  }
+  bool is_told = false;
 };
 
 /// The recording of a simulation, and its contacts frame by frame.
@@ -243,21 +268,39 @@ TEST(ViewerRecording, LoopsAndStepsBothWaysWithinItsEnds) {
   EXPECT_FALSE(page.failure(R"({"do": "set", "objects": 2})").empty());
 }
 
-TEST(ViewerRecording, EventsAreThoseOfTheFramesThatAreSeen) {
-  const Recorded recorded = record(60);
+/// Frames that are added while the recording is shown.
+TEST(ViewerRecording, GrowsAndFollows) {
+  Recorded recorded = record(60);
+  auto frames = std::make_shared<GrowingFrames>();
+  *static_cast<StoredFrames*>(frames.get()) = *recorded.frames;
+  frames->show_first(20);
+  frames->has_news = false;
+  recorded.show.frames = frames;
   TestPage page(recorded.show);
   opening(page);
-  page.ask({{"do", "pause"}});
-  page.frame();
-  const std::uint32_t begin = recorded.frames->rows.contacts.begin.at(0).frame;
-  const auto seek = [&](std::uint32_t frame) {
-    page.ask({{"do", "seek"}, {"frame", frame}});
-    page.session.advance(0);
-    return page.frame();
-  };
-  EXPECT_EQ(seek(begin).values<Pair>(44), (std::vector<Pair>{{0, 1}}));
-  EXPECT_TRUE(seek(begin + 1).values<Pair>(44).empty());
-  EXPECT_EQ(seek(begin - 1).values<Pair>(45), (std::vector<Pair>{{0, 1}}));
+  page.session.advance(0);
+  ViewerMessage frame = page.frame();
+  EXPECT_EQ(frame.json["step"], 19) << "starts at the newest frame";
+  EXPECT_EQ(frame.json["playing"], true);
+  for (int i = 0; i < 50; ++i) page.session.advance(0.01);
+  EXPECT_TRUE(page.drain().empty()) << "waits for more frames";
+  frames->show_first(25);
+  page.session.advance(0.01);
+  const ViewerMessage series = page.only(ViewerMessage::series);
+  EXPECT_EQ(series.section(64).count, 25u);
+  for (int i = 0; i < 3; ++i) page.session.advance(0.01);
+  frame = page.frame();
+  EXPECT_EQ(frame.json["range"], (Json{0, 24}));
+  EXPECT_GT(frame.json["step"], 19);
+  EXPECT_LT(frame.json["step"], 25);
+  EXPECT_EQ(contact_count(frame), recorded.contacts[frame.json["step"].get<std::size_t>()].size());
+  page.ask({{"do", "seek"}, {"frame", 24}});
+  page.session.advance(0);
+  EXPECT_EQ(page.frame().json["step"], 24);
+  frames->problem = "run.h5: has been recorded anew; open it again";
+  page.session.advance(0.01);
+  EXPECT_EQ(page.only(ViewerMessage::failure).json["message"], frames->problem);
+  EXPECT_EQ(page.frame().json["step"], 24);
 }
 
 TEST(ViewerRecording, AFrameThatCannotBeReadLeavesAllAsItWas) {

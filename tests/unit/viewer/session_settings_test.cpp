@@ -110,13 +110,14 @@ TEST(ViewerSettings, ASetLosesNoEventsAndNoStatistics) {
   TestPage page(touching_balls());
   page.scene();
   page.ask({{"do", "pause"}});
-  EXPECT_EQ(page.frame().values<Pair>(44).size(), 1u);
+  EXPECT_EQ(page.frame().values<StepPair>(44).size(), 1u);
   page.ask({{"do", "step"}, {"count", 3}});
   for (int i = 0; i < 3; ++i) page.session.advance(0);
   page.say({{"do", "set"}, {"leaf_size", 4}});
   const std::size_t columns = page.scene().json["statistics"].size();
   const ViewerMessage frame = page.frame();
-  EXPECT_TRUE(frame.values<Pair>(44).empty() && frame.values<Pair>(45).empty()) << "the pair still touches";
+  EXPECT_TRUE(frame.values<StepPair>(44).empty() && frame.values<StepPair>(45).empty())
+      << "the pair still touches";
   EXPECT_EQ(frame.section(43).count, 3 * columns);
 }
 

@@ -43,6 +43,9 @@ struct AttachOptions {
   /// The first step and each break wait until a page is connected. Without this option, nothing waits while
   /// no page is connected.
   bool wait_for_page = false;
+  /// Memory in bytes for the positions of the last steps that the page got, at least 0. The page can go back
+  /// to these steps; 0 keeps none.
+  double history_bytes = 5e8;
   BreakOptions breaks{};
 };
 
@@ -63,6 +66,7 @@ class View {
   std::uint64_t frame_count() const;  ///< steps that the page was given
   double seconds_in_steps() const;    ///< time that frames have taken, without pauses
   bool is_paused() const;             ///< the program waits, or will in the next step
+  /// Throws `Error` when the last step did not detect the kind of contacts that an event needs.
   void set_breaks(const BreakOptions& breaks);
   /// Shows the last step until the page continues the program, the view is closed, or a stop is requested.
   /// The scene must exist, and must not have been moved.
@@ -78,8 +82,9 @@ class View {
 /// Shows a scene in a page while the program runs: from now on, `detect` shows its result. Replaces the
 /// observer of the scene. The page can pause the program in `detect`, take single steps, and set breaks. The
 /// page reads the user's scene itself, only while `detect` waits. Threads: one for the session, one for the
-/// network. Throws `Error` when an option is out of range, when the address is not available, and when the
-/// library was built without SUPPLE_BUILD_VIEWER.
+/// network. Throws `Error` when an option is out of range, when the scene does not detect the kind of
+/// contacts that a break needs, when the address is not available, and when the library was built without
+/// SUPPLE_BUILD_VIEWER.
 View attach(Scene& scene, const AttachOptions& options = {});
 /// The same for the scene of a simulation. The time step defaults to that of the simulation.
 View attach(Simulation& simulation, const AttachOptions& options = {});

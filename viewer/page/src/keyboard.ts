@@ -44,6 +44,7 @@ function onShifted(app: App, key: string): boolean {
     s: () => app.picture(),
     v: () => app.film(),
     p: () => app.frames(),
+    l: () => app.player.markSection(),
   };
   actions[key]?.();
   return key in actions;

@@ -76,6 +76,10 @@ export interface Event {
 export type Events = Record<EventKind, { begin: Event[]; end: Event[] }>;
 const noEvents = (): Events => ({ contact: { begin: [], end: [] }, narrow_phase: { begin: [], end: [] }, volume: { begin: [], end: [] } });
 
+function eventsOf(data: Uint32Array): Event[] {
+  return Array.from({ length: data.length / 3 }, (_, i) => ({ frame: data[3 * i]!, a: data[3 * i + 1]!, b: data[3 * i + 2]! }));
+}
+
 export const EVENT_LABELS: Record<EventKind, string> = { contact: "contacts", narrow_phase: "narrow phase", volume: "broad phase" };
 
 /** The colliding nodes to draw: of two objects or of all pairs, on one level. */
@@ -256,8 +260,13 @@ export class Model extends Emitter<ModelEvents> {
     }
     this.frame = message;
     this.framesSeen += 1;
-    if (this.scene.source !== "recording") this.remember(message);
+    if (this.scene.source !== "recording" && !message.text.past) this.remember(message);
     this.emit("frame", message);
+  }
+
+  /** The first and the last step that can be shown: of a recording, or those that a session keeps. */
+  get range(): [number, number] {
+    return this.frame?.text.range ?? [0, (this.scene?.frames ?? 1) - 1];
   }
 
   takeSeries(message: SeriesMessage): void {
@@ -270,18 +279,17 @@ export class Model extends Emitter<ModelEvents> {
       this.history.columns[c] = column;
     }
     this.history.frames = Array.from({ length: rows }, (_, row) => row);
-    const list = (data: Uint32Array) =>
-      Array.from({ length: data.length / 3 }, (_, i) => ({ frame: data[3 * i]!, a: data[3 * i + 1]!, b: data[3 * i + 2]! }));
     for (const kind of EVENT_KINDS)
-      this.history.events[kind] = { begin: list(message.events[kind].begin), end: list(message.events[kind].end) };
+      this.history.events[kind] = { begin: eventsOf(message.events[kind].begin), end: eventsOf(message.events[kind].end) };
     this.emit("history", null);
   }
 
-  /** Adds the steps since the last frame, with the events of all of them at this frame. */
+  /** Adds the steps since the last frame, with their events. */
   private remember({ text: { step, time }, steps, events }: FrameMessage): void {
     const { history } = this;
     if (step === history.last) return;  // the same step again, with other layers or options
     if (step < history.last) history.reset(history.names);  // another program
+    const known = history.last;
     const width = history.names.length - 1;
     const count = steps.length / width;
     for (let i = 0; i < count; ++i) {
@@ -290,8 +298,8 @@ export class Model extends Emitter<ModelEvents> {
     }
     for (const kind of EVENT_KINDS)
       for (const side of ["begin", "end"] as const) {
-        const data = events[kind][side];
-        for (let i = 0; i < data.length; i += 2) history.events[kind][side].push({ frame: step, a: data[i]!, b: data[i + 1]! });
+        const list = history.events[kind][side];
+        for (const event of eventsOf(events[kind][side])) if (event.frame > known) list.push(event);
       }
     this.emit("history", null);
   }

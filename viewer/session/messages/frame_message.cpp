@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -31,9 +30,15 @@ std::array<float, 3> floats(const Vec3d& v) {
 
 }  // namespace
 
+void FramePacker::restart() {
+  forget();
+  for (PairHistory* const pairs : {&touching_, &colliding_, &overlapping_}) pairs->restart();
+  rows_.clear();
+}
+
 void FramePacker::forget() {
   forget_positions();
-  for (ObjectPairs* const pairs : {&touching_, &colliding_, &overlapping_}) pairs->clear();
+  for (PairHistory* const pairs : {&touching_, &colliding_, &overlapping_}) pairs->forget_sent();
   sent_rows_ = 0;
 }
 
@@ -42,21 +47,48 @@ void FramePacker::forget_positions() {
   paper_vertices_.forget();
 }
 
-void FramePacker::add_step(std::uint64_t step, double motion_seconds, const StepStats& stats) {
+void FramePacker::add_step(std::uint64_t step, double motion_seconds, const DetectResult& result) {
+  add_row(step, motion_seconds, result.stats);
+  now_.clear();
+  for (const ObjectPair& pair : result.object_pairs) now_.emplace_back(pair.a.index, pair.b.index);
+  overlapping_.set(step, now_);
+  now_.clear();
+  for (const auto groups : {result.groups, result.continuous_groups}) {
+    for (const ContactGroup& group : groups) {
+      if (group.a != group.b) now_.emplace_back(group.a.index, group.b.index);
+    }
+  }
+  std::sort(now_.begin(), now_.end());
+  now_.erase(std::unique(now_.begin(), now_.end()), now_.end());
+  touching_.set(step, now_);
+}
+
+void FramePacker::add_step(const StepRow& row) {
+  add_row(row.step, 0, row.stats);
+  overlapping_.change(row.step, row.volumes.begin, row.volumes.end);
+  touching_.change(row.step, row.contacts.begin, row.contacts.end);
+}
+
+void FramePacker::add_row(std::uint64_t step, double motion_seconds, const StepStats& stats) {
   rows_.reserve(most_rows * row_width);
   if (!rows_.empty() && step == last_row_)
     rows_.resize(rows_.size() - row_width);  // detected again after the step
   else if (step != last_row_ + 1)
     rows_.clear();
-  if (rows_.size() == most_rows * row_width) {
-    constexpr std::size_t surplus = most_rows / 4;  // many at once, so that the cost per step is small
-    rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(surplus * row_width));
-    sent_rows_ -= std::min(sent_rows_, surplus);
-  }
+  last_row_ = step;
+  if (rows_.size() == most_rows * row_width) drop_old_rows();
   sent_rows_ = std::min(sent_rows_, rows_.size() / row_width);
   rows_.push_back(motion_seconds);
   for_each_statistic(stats, [&](const char*, double value) { rows_.push_back(value); });
-  last_row_ = step;
+}
+
+/// Drops many rows at once, so that the cost per step is small.
+void FramePacker::drop_old_rows() {
+  constexpr std::size_t surplus = most_rows / 4;
+  rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(surplus * row_width));
+  sent_rows_ -= std::min(sent_rows_, surplus);
+  const std::uint64_t first = last_row_ - (most_rows - surplus);
+  for (PairHistory* const pairs : {&touching_, &colliding_, &overlapping_}) pairs->drop_before(first);
 }
 
 void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
@@ -70,8 +102,7 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   add_proximity_pairs(frame);
   add_penetrations(frame);
   add_curves(frame);
-  add_events(frame.source.scene().result());
-  add_statistics(frame);
+  add_steps(frame);
   if (frame.layers.candidates) add_candidates(frame);
   for (const std::uint32_t object : frame.layers.octree_objects) {
     if (frame.source.scene().contains(frame.source.id(object))) add_octree(frame, object);
@@ -83,7 +114,6 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   else
     paper_vertices_.forget();
   add_text(frame);
-  sent_rows_ = rows_.size() / row_width;
 }
 
 void FramePacker::add_positions(const FrameView& frame) {
@@ -233,41 +263,24 @@ void FramePacker::add_curves(const FrameView& frame) {
   std::copy_n(scene.result().enclosed_vertices.begin(), vertex_count, vertices.begin());
 }
 
-/// Adds the events since the last frame that was sent, which may be several steps ago.
-void FramePacker::add_events(const DetectResult& result) {
-  now_.clear();
-  for (const ObjectPair& pair : result.object_pairs) now_.emplace_back(pair.a.index, pair.b.index);
-  add_changes(Tag::volume_begin, Tag::volume_end, overlapping_);
-  now_.clear();
-  for (const auto groups : {result.groups, result.continuous_groups}) {
-    for (const ContactGroup& group : groups) {
-      if (group.a != group.b) now_.emplace_back(group.a.index, group.b.index);
-    }
-  }
-  std::sort(now_.begin(), now_.end());
-  now_.erase(std::unique(now_.begin(), now_.end()), now_.end());
-  add_changes(Tag::contact_begin, Tag::contact_end, touching_);
-}
-
-/// Adds the differences between the present pairs and those sent before, which the present pairs replace.
-void FramePacker::add_changes(Tag begin, Tag end, ObjectPairs& sent) {
-  const auto add_missing = [&](Tag tag, const ObjectPairs& pairs, const ObjectPairs& from) {
-    changed_.clear();
-    std::set_difference(pairs.begin(), pairs.end(), from.begin(), from.end(), std::back_inserter(changed_));
-    const auto rows = message_->add<std::array<std::uint32_t, 2>>(tag, changed_.size());
-    for (std::size_t i = 0; i < changed_.size(); ++i) rows[i] = {changed_[i].first, changed_[i].second};
-  };
-  add_missing(begin, now_, sent);
-  add_missing(end, sent, now_);
-  sent.swap(now_);
-}
-
-/// Adds the rows that the page does not have. The last one is that of this frame.
-void FramePacker::add_statistics(const FrameView& frame) {
+/// Adds the statistics and the events that the page does not have. The last row is that of this frame. Frames
+/// of the past have only this row, and those of a recording no events, because the page has the others.
+void FramePacker::add_steps(const FrameView& frame) {
   const Source& source = frame.source;
-  add_step(source.step(), source.motion_seconds(), source.scene().result().stats);
+  const DetectResult& result = source.scene().result();
+  if (frame.is_past || frame.is_recorded) {
+    const auto row = message_->add<double>(Tag::statistics, row_width);
+    std::size_t column = 0;
+    row[column++] = source.motion_seconds();
+    for_each_statistic(result.stats, [&](const char*, double value) { row[column++] = value; });
+    return;
+  }
+  add_step(source.step(), source.motion_seconds(), result);
   const auto unsent = std::span(rows_).subspan(sent_rows_ * row_width);
   std::copy(unsent.begin(), unsent.end(), message_->add<double>(Tag::statistics, unsent.size()).begin());
+  sent_rows_ = rows_.size() / row_width;
+  touching_.send(*message_);
+  overlapping_.send(*message_);
 }
 
 void FramePacker::add_candidates(const FrameView& frame) {
@@ -378,7 +391,10 @@ void FramePacker::add_colliding_vertices(const FrameView& frame) {
   const auto& vertices = paper_vertices_.find(frame.show, frame.source);
   now_.clear();
   for (const ObjectPair& pair : paper_vertices_.pairs()) now_.emplace_back(pair.a.index, pair.b.index);
-  add_changes(Tag::narrow_phase_begin, Tag::narrow_phase_end, colliding_);
+  if (!frame.is_past && !frame.is_recorded) {
+    colliding_.set(frame.source.step(), now_);
+    colliding_.send(*message_);
+  }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const std::size_t count = limited("colliding_vertices", vertices[i].size());
     const auto sent =
@@ -397,6 +413,9 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.member("playing", frame.playing);
   json_.member("speed", frame.speed);
   json_.member("loop", frame.loop);
+  add_numbers("section", frame.section);
+  add_numbers("range", frame.range);
+  json_.member("past", frame.is_past);
   frame.source.add_to(json_, frame.center);
   json_.key("octree_levels");
   json_.begin_array();
@@ -414,9 +433,25 @@ void FramePacker::add_text(const FrameView& frame) {
     json_.member("reason", word_of(untested.reason));
     json_.end_object();
   }
+  if (!frame.has_path && frame.source.step() > 0 &&
+      contains(frame.source.contacts(), ContactKinds::continuous)) {
+    json_.begin_object();
+    json_.member("kind", "continuous");
+    json_.member("reason", "no_step_before");
+    json_.end_object();
+  }
   json_.end_array();
   json_.end_object();
   message_->add_text(json_.text());
+}
+
+/// Adds a member with two steps, or null.
+void FramePacker::add_numbers(const char* name, const std::optional<std::array<std::uint64_t, 2>>& steps) {
+  json_.key(name);
+  if (!steps) return json_.null();
+  json_.begin_array();
+  for (const std::uint64_t step : *steps) json_.value(step);
+  json_.end_array();
 }
 
 /// The number of elements to send. Counts the omitted ones, summed over objects.

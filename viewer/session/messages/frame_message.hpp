@@ -2,14 +2,16 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "history/pair_history.hpp"
 #include "layers.hpp"
 #include "messages/json_text.hpp"
 #include "messages/message.hpp"
+#include "program/program.hpp"
 #include "scene_view.hpp"
 #include "sources/center.hpp"
 #include "sources/paper_vertices.hpp"
@@ -28,21 +30,30 @@ struct FrameView {
   bool playing = false;
   double speed = 1;
   bool loop = false;
+  std::optional<std::array<std::uint64_t, 2>> section{};  ///< that loops: its first and its last step
+  std::array<std::uint64_t, 2> range{};                   ///< the first and the last step that can be shown
+  bool is_past = false;                                   ///< a kept step, which is not the last one
+  bool has_path = true;                                   ///< false: not the motion since the step before
+  bool is_recorded = false;  ///< a frame of a recording, whose events are in the time series
 };
 
 /// Writes frame messages and tracks what the page already has.
 class FramePacker {
  public:
+  /// Call when a new run starts: there are no steps.
+  void restart();
   /// Call when the page has nothing yet.
   void forget();
   /// Call when the page keeps only events and statistics.
   void forget_positions();
-  /// Call after each step of a simulation or a program: the next frame contains the statistics of all steps.
-  void add_step(std::uint64_t step, double motion_seconds, const StepStats& stats);
+  /// Call after each step of a simulation, and again when the step was detected again: the next frame
+  /// contains the statistics and the events of all steps.
+  void add_step(std::uint64_t step, double motion_seconds, const DetectResult& result);
+  /// Call for each step of a program.
+  void add_step(const StepRow& row);
   void pack(const FrameView& frame, MessageWriter& message);
 
  private:
-  using ObjectPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   /// A layer that is too large to send, and its full number of elements.
   struct Omission {
     const char* layer;
@@ -56,9 +67,9 @@ class FramePacker {
   void add_proximity_pairs(const FrameView& frame);
   void add_penetrations(const FrameView& frame);
   void add_curves(const FrameView& frame);
-  void add_events(const DetectResult& result);
-  void add_changes(Tag begin, Tag end, ObjectPairs& sent);
-  void add_statistics(const FrameView& frame);
+  void add_row(std::uint64_t step, double motion_seconds, const StepStats& stats);
+  void drop_old_rows();
+  void add_steps(const FrameView& frame);
   void add_candidates(const FrameView& frame);
   void add_octree(const FrameView& frame, std::uint32_t object);
   void add_colliding_nodes(const FrameView& frame, const CollidingNodes& wanted);
@@ -73,13 +84,17 @@ class FramePacker {
   void add_scene_regions(const FrameView& frame);
   void add_colliding_vertices(const FrameView& frame);
   void add_text(const FrameView& frame);
+  void add_numbers(const char* name, const std::optional<std::array<std::uint64_t, 2>>& steps);
   std::size_t limited(const char* layer, std::uint64_t count);
 
   MessageWriter* message_ = nullptr;
   std::vector<std::uint64_t> versions_;  // one per object, of the positions last sent; 0 for none
-  /// Pairs that the page knows: of contacts, of the narrow phase, and of volumes.
-  ObjectPairs touching_, colliding_, overlapping_;
-  ObjectPairs now_, changed_;
+  /// Pairs of objects in the last step: that touch, and whose volumes overlap. Their events are those of the
+  /// steps. Pairs of the narrow phase are only in frames.
+  PairHistory touching_{Tag::contact_begin, Tag::contact_end},
+      overlapping_{Tag::volume_begin, Tag::volume_end},
+      colliding_{Tag::narrow_phase_begin, Tag::narrow_phase_end};
+  ObjectPairs now_;
   /// Statistics of the last steps, a row for each; the step of the last row; and how many the page has.
   std::vector<double> rows_;
   std::uint64_t last_row_ = 0;

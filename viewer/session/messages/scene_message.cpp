@@ -141,10 +141,8 @@ bool has_bodies(const SceneView& show) {
 void add_settings(Stage& stage, JsonText& json) {
   json.key("settings");
   json.begin_array();
-  if (stage.program() == nullptr) {  // a program has chosen its options
-    add_descriptions<SceneOptions>(json);
-    add_descriptions<ObjectOctreeOptions>(json);
-  }
+  add_descriptions<SceneOptions>(json);
+  add_descriptions<ObjectOctreeOptions>(json);
   if (stage.simulation() != nullptr) {
     for_each_restart_setting([&]<class Struct, class Value>(const Field<Struct, Value>& field, auto) {
       if (!std::is_same_v<Value, Integrator> || has_bodies(stage.show())) add_description(field, true, json);
@@ -203,7 +201,7 @@ void add_abilities(Stage& stage, JsonText& json) {
   else
     json.null();
   const std::vector<std::string> simulation{"play", "reset", "grab", "set"}, recording{"play", "seek", "set"},
-      program{"play", "break"};
+      program{"play", "break", "set"};
   json.member("can", std::span<const std::string>(stage.recording() ? recording
                                                   : stage.program() ? program
                                                                     : simulation));

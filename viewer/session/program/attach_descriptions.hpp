@@ -67,6 +67,11 @@ struct Description<viewer::AttachOptions> {
     visitor(Field<Options, bool>{.name = "wait_for_page",
                                  .member = &Options::wait_for_page,
                                  .doc = "The first step and each break wait until a page is connected"});
+    visitor(Field<Options, double>{.name = "history_bytes",
+                                   .member = &Options::history_bytes,
+                                   .doc = "Memory for the last steps, to which the page can go back",
+                                   .range = ValueRange::from(0),
+                                   .unit = "bytes"});
     visitor(Field<Options, viewer::BreakOptions>{
         .name = "breaks", .member = &Options::breaks, .doc = "Events that pause the program"});
   }

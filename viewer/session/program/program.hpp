@@ -27,10 +27,14 @@ struct ProgramStep {
   ContactKinds contacts = ContactKinds::none;  ///< that were detected
 };
 
-/// The statistics of a step, which may have had no frame.
+/// The statistics and the events of a step, which may have had no frame.
 struct StepRow {
+  struct Events {
+    std::vector<ObjectPair> begin{}, end{};
+  };
   std::uint64_t step = 0;
   StepStats stats{};
+  Events contacts{}, volumes{};
 };
 
 /// What a session must know between two steps.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,13 +15,16 @@ class Player {
   /// How long `advance` may sleep when nothing moves. Finite, because timers need a finite number.
   static constexpr double idle_seconds = 1;
 
+  /// From the past, a simulation or a program plays its kept steps, and then goes on.
   void play(Stage& stage);
   void pause(Stage& stage);
-  /// Pauses, then goes `count` steps or frames forward, or backward when negative.
+  /// Pauses, then goes `count` steps or frames forward, or backward when negative. A simulation or a program
+  /// goes backward in its kept steps.
   void step(Stage& stage, std::int64_t count);
   void set_speed(double factor);  ///< 0: as fast as possible
-  void set_loop(bool on) { loop_ = on; }
-  /// Goes to a frame, which must exist.
+  /// `section`: the first and the last step to repeat; without it, everything.
+  void set_loop(bool on, std::optional<std::array<std::uint64_t, 2>> section = {});
+  /// Goes to a frame of a recording or of the history, which must exist.
   void seek(std::uint64_t frame);
   /// Call after the stage has been replaced.
   void restart();
@@ -30,6 +34,9 @@ class Player {
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
   bool loop() const { return loop_; }
+  const std::optional<std::array<std::uint64_t, 2>>& section() const { return section_; }
+  /// Whether a frame was requested and not yet shown.
+  bool has_target() const { return target_.has_value(); }
 
   struct Outcome {
     bool changed = false;  ///< there is a new state to show
@@ -43,7 +50,13 @@ class Player {
   Outcome advance_program(ProgramSource& source);
   Outcome advance_simulation(SimulationSource& simulation, double time_step, double seconds);
   Outcome advance_recording(RecordingSource& recording, double seconds);
+  Outcome advance_past(Stage& stage, double seconds);
   bool take_due_step(double time_step, double seconds);
+  /// The first and the last frame that play.
+  struct Section {
+    std::uint64_t first = 0, last = 0;
+  };
+  Section section_of(const RecordingSource& recording) const;
   std::uint64_t due_frame(RecordingSource& recording, double seconds);
   std::uint64_t frame_in_time(RecordingSource& recording, double seconds);
   double wait_for_frame(const RecordingSource& recording) const;
@@ -52,10 +65,11 @@ class Player {
   bool is_watched_ = true;
   double speed_ = 1;
   bool loop_ = false;
-  std::int64_t steps_ = 0;                 // requested and not yet taken
-  double due_ = 0;                         // simulation: seconds behind
-  std::optional<double> clock_{};          // recording that plays: its time
-  std::optional<std::uint64_t> target_{};  // recording: the requested frame
+  std::optional<std::array<std::uint64_t, 2>> section_{};  // that loops: its first and its last step
+  std::int64_t steps_ = 0;                                 // requested and not yet taken
+  double due_ = 0;                                         // simulation: seconds behind
+  std::optional<double> clock_{};                          // recording or past that plays: its time
+  std::optional<std::uint64_t> target_{};                  // recording or history: the requested frame
 };
 
 }  // namespace supple::viewer

@@ -14,7 +14,7 @@ bool same(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3d)) == 0);
 }
 
-/// The first column of the series, when it has one row per frame and never decreases.
+/// The first column of the series, when it has one row per frame and grows.
 std::vector<double> times_of(const Frames& frames) {
   const Series& series = frames.series();
   const std::size_t columns = series.names.size();
@@ -25,21 +25,30 @@ std::vector<double> times_of(const Frames& frames) {
     if (!std::isfinite(time) || (!times.empty() && time < times.back())) return {};
     times.push_back(time);
   }
+  if (times.size() > 1 && times.front() == times.back()) return {};
   return times;
 }
 
 }  // namespace
 
-RecordingSource::RecordingSource(const SceneView& show)
+RecordingSource::RecordingSource(const SceneView& show, std::uint64_t frame)
     : show_(show), scene_(show.simulation.scene), times_(times_of(*show.frames)) {
   for (const ViewedObject& object : show.objects) {
     ids_.push_back(scene_.add(object.mesh, object.options));
     objects_.emplace_back().now = object.mesh.positions;
   }
-  if (frame_count() > 0)
-    seek(0);
-  else
+  if (frame_count() > 0) {
+    seek(frame);
+  } else {
+    frame_ = 0;
     scene_.detect();
+  }
+}
+
+bool RecordingSource::refresh() {
+  if (!show_.frames->refresh()) return false;
+  times_ = times_of(*show_.frames);
+  return true;
 }
 
 double RecordingSource::time_of(std::uint64_t frame) const {
@@ -47,15 +56,18 @@ double RecordingSource::time_of(std::uint64_t frame) const {
   return static_cast<double>(frame) * show_.simulation.time_step;
 }
 
+std::uint64_t RecordingSource::frame_of(std::uint64_t step) const {
+  return std::min(show_.frames->frame_of(step), last_frame());
+}
+
 std::uint64_t RecordingSource::frame_at(double seconds) const {
-  const std::uint64_t last = std::max<std::uint64_t>(frame_count(), 1) - 1;
   if (!times_.empty()) {
     const auto after = std::upper_bound(times_.begin(), times_.end(), seconds);
     return after == times_.begin() ? 0 : static_cast<std::uint64_t>(after - times_.begin()) - 1;
   }
   // The factor keeps rounding from selecting the frame before.
   const double frame = std::floor(seconds / show_.simulation.time_step * (1 + 1e-12));
-  return frame > 0 ? static_cast<std::uint64_t>(std::min(frame, static_cast<double>(last))) : 0;
+  return frame > 0 ? static_cast<std::uint64_t>(std::min(frame, static_cast<double>(last_frame()))) : 0;
 }
 
 void RecordingSource::seek(std::uint64_t frame) {
@@ -64,7 +76,7 @@ void RecordingSource::seek(std::uint64_t frame) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   read_seconds_ = std::max(taken.count(), 0.0);
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    if (!show_.objects[i].options.is_static) place(i, has_paths() && frame > 0);
+    if (!show_.objects[i].options.is_static) place(i, has_paths(frame));
   }
   frame_ = frame;
   scene_.detect();
@@ -77,7 +89,7 @@ void RecordingSource::read(std::uint64_t frame) {
     Object& object = objects_[i];
     object.next_now.resize(object.now.size());
     show_.frames->read(frame, i, object.next_now);
-    if (!has_paths() || frame == 0) continue;
+    if (!has_paths(frame)) continue;
     object.next_before.resize(object.now.size());
     if (frame == frame_ + 1)
       object.next_before = object.now;

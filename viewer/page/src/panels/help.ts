@@ -2,8 +2,8 @@ import { h, sheet } from "./dom";
 
 const GROUPS: [string, [string, string][]][] = [
   ["Play", [
-    ["Space", "play or pause, wherever the focus is; Enter presses a button and ticks a box"], ["→ ←", "one step forward; in a recording also back"], ["Home End", "first, last frame"],
-    [". ,", "next, previous event"], ["[ ]", "slower, faster"], ["L", "loop a recording"], ["R", "restart with the seed"],
+    ["Space", "play or pause, wherever the focus is; Enter presses a button and ticks a box"], ["→ ←", "one step forward, back"], ["Home End", "first, newest frame"],
+    [". ,", "next, previous event"], ["[ ]", "slower, faster"], ["L", "loop"], ["Shift L", "start and end of a section to loop"], ["R", "restart with the seed"],
   ]],
   ["Look", [
     ["drag", "orbit; right button or Shift: pan"], ["wheel", "zoom to the cursor"], ["double-click", "turn around this point"], ["Shift arrows", "orbit"], ["Alt arrows", "pan"], ["+ −", "zoom"],

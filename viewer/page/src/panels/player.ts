@@ -1,9 +1,9 @@
-/** Play, step, speed and reset; for a recording also the timeline with its events. */
+/** Play, step, speed and reset, and the timeline of a recording or of the steps that a session keeps. */
 import type { Client } from "../client";
-import { OKABE_ITO } from "../colours";
-import { EVENT_LABELS, type Model } from "../model";
-import { EVENT_KINDS, type EventKind } from "../protocol/messages";
+import type { Model } from "../model";
+import type { FrameText } from "../protocol/messages";
 import { h, iconButton, readable, setIcon } from "./dom";
+import { Timeline } from "./timeline";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 
@@ -15,13 +15,12 @@ export class Player {
   private readonly play = iconButton("play", "Play", "Space", () => this.togglePlay());
   private readonly loop = iconButton("loop", "Loop", "L", () => this.toggleLoop());
   private readonly speeds = h("select", { "aria-label": "Speed", title: "Speed ([ and ])", onchange: () => this.setSpeed(Number(this.speeds.value)) });
-  private readonly kinds = h("select", { "aria-label": "Events", title: "Events on the timeline; those of the narrow phase are in recordings made with --colliding-vertices", onchange: () => this.drawMarks() });
   private readonly seed = h("input", { type: "text", inputmode: "numeric", "aria-label": "Seed", title: "Seed of the next reset" });
-  private readonly slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Timeline", oninput: () => this.scrub() });
-  private readonly marks = h("canvas", { class: "marks", "aria-hidden": "true" });
+  private readonly timeline: Timeline;
+  private readonly newest = h("button", { type: "button", class: "text-button past", title: "Go to the newest step (End)", hidden: true, onclick: () => this.seek(Infinity) }, "Newest step");
   private readonly place = h("output", { class: "place", "aria-label": "Place" });
   private readonly rate = h("output", { class: "rate", "aria-label": "Rate", title: "Frames per second that the page draws, and simulated or recorded seconds per second of the clock" });
-  private readonly recordingOnly: HTMLElement[];
+  private readonly seekable: HTMLElement[];
   private readonly simulationOnly: HTMLElement[];
   private readonly always: HTMLElement[];
   private readonly reset_ = iconButton("reset", "Reset", "R", () => this.reset());
@@ -35,27 +34,31 @@ export class Player {
     const next = iconButton("nextEvent", "Next event", ".", () => this.jump(1));
     const back = h("button", { type: "button", class: "text-button", "aria-label": "−1 step", title: "Step back (←)", onclick: () => this.step(-1) }, "−1");
     const forward = h("button", { type: "button", class: "text-button", "aria-label": "+1 step", title: "Step (→)", onclick: () => this.step(1) }, "+1");
-    const track = h("div", { class: "track" }, this.marks, this.slider);
+    const timeline = (this.timeline = new Timeline(model));
+    timeline.onScrub = (step) => {
+      this.pause();
+      this.seek(step);
+    };
+    timeline.onSection = (section) => this.loopSection(section);
     const seed = h("label", { class: "seed" }, "Seed ", this.seed);
-    this.kinds.append(...EVENT_KINDS.map((kind) => h("option", { value: kind }, EVENT_LABELS[kind])));
-    this.recordingOnly = [first, last, previous, next, this.kinds, back, this.loop, track];
+    this.seekable = [first, last, previous, next, timeline.kinds, back, this.loop, timeline.section, timeline.element, timeline.named];
     this.simulationOnly = [this.reset_, seed];
     this.always = [this.play, forward, this.speeds, this.place, this.rate];
     this.speeds.append(h("option", { value: 0 }, "fastest"), ...SPEEDS.map((speed) => h("option", { value: speed }, `${speed}×`)));
     this.seed.addEventListener("change", () => this.reset());
     this.element = h(
       "footer", { class: "player", "aria-label": "Player", role: "toolbar" },
-      first, previous, back, this.play, forward, next, last, this.kinds, this.loop, this.reset_, seed, this.speeds, track, this.place, this.rate,
+      first, previous, back, this.play, forward, next, last, timeline.kinds, this.loop, timeline.section, this.reset_, seed, this.speeds, timeline.element, timeline.named, this.newest, this.place, this.rate,
     );
     model.on("scene", () => this.build());
     model.on("frame", (frame) => this.show(frame.text));
-    model.on("history", () => this.drawMarks());
     model.on("pulled", () => this.fit());
-    new ResizeObserver(() => this.drawMarks()).observe(track);
   }
 
-  private get frames(): number | null {
-    return this.model.scene?.frames ?? null;
+  /** Whether there are steps to go to. */
+  private get canSeek(): boolean {
+    const [first, last] = this.model.range;
+    return this.model.moves && last > first;
   }
 
   private build(): void {
@@ -63,17 +66,20 @@ export class Player {
     const isRecording = scene.source === "recording";
     const isProgram = scene.source === "program";
     const { moves } = this.model;
-    for (const element of this.recordingOnly) element.hidden = !isRecording || !moves;
     for (const element of this.simulationOnly) element.hidden = isRecording || isProgram || !moves;
     for (const element of this.always) element.hidden = !moves;
     this.speeds.hidden = !moves || isProgram;  // a program has its own speed
     this.fit();
     this.speeds.querySelector<HTMLOptionElement>("option[value='0']")!.hidden = isRecording;
-    this.slider.max = String(Math.max(0, (scene.frames ?? 1) - 1));
     this.seed.value = scene.seed;
     this.wanted = this.asked = null;
-    this.element.classList.toggle("recording", isRecording);
-    this.drawMarks();
+    this.timeline.reset();
+    this.fitTimeline();
+  }
+
+  private fitTimeline(): void {
+    for (const element of this.seekable) element.hidden = !this.canSeek;
+    this.element.classList.toggle("seekable", this.canSeek);
   }
 
   /** Meshes at rest need no player, unless they were pulled: then only a reset brings them back. */
@@ -83,16 +89,22 @@ export class Player {
     if (isAtRest) this.reset_.hidden = !this.model.wasPulled;
   }
 
-  private show(text: { step: number; time: number; playing: boolean; speed: number; loop?: boolean }): void {
+  private show(text: FrameText): void {
+    const isRecording = this.model.scene!.source === "recording";
     this.setPlaying(text.playing);
     this.speed = text.speed;
     if (document.activeElement !== this.speeds) this.speeds.value = String(this.speed);
     if (text.loop !== undefined) this.setLooping(text.loop);
-    if (this.asked === text.step) this.asked = null;
-    if (this.asked === null && this.wanted === null) this.slider.value = String(text.step);
-    const of = this.frames === null ? "" : ` / ${readable(this.frames - 1)}`;
-    this.place.textContent = `${this.frames === null ? "step" : "frame"} ${readable(text.step)}${of}${this.model.scene!.time_step > 0 ? ` · ${text.time.toFixed(3)} s` : ""}`;
-    this.slider.setAttribute("aria-valuetext", this.place.textContent);
+    if (this.seekable[0]!.hidden === this.canSeek) this.fitTimeline();
+    this.timeline.show(text.section, text.loop === true);
+    const { slider } = this.timeline;
+    // Not every step of a program is kept.
+    if (this.asked === text.step || this.model.scene!.source === "program") this.asked = null;
+    if (this.asked === null && this.wanted === null) slider.value = String(text.step);
+    const of = isRecording || text.past ? ` / ${readable(text.range[1])}` : "";
+    this.newest.hidden = !text.past;
+    this.place.textContent = `${isRecording ? "frame" : "step"} ${readable(text.step)}${of}${this.model.scene!.time_step > 0 ? ` · ${text.time.toFixed(3)} s` : ""}`;
+    slider.setAttribute("aria-valuetext", this.place.textContent);
   }
 
   /** `factor`: simulated seconds per second of the clock; null when it is not known. */
@@ -125,15 +137,26 @@ export class Player {
   }
 
   step(count: number): void {
-    if (count < 0 && !this.model.can("seek")) return;
+    if (count < 0 && !this.canSeek) return;
     this.client.send({ do: "step", count });
     this.setPlaying(false);
   }
 
   toggleLoop(): void {
-    if (!this.model.can("seek")) return;
+    if (!this.canSeek) return;
     this.setLooping(!this.looping);
     this.client.send({ do: "loop", on: this.looping });
+  }
+
+  markSection(): void {
+    if (this.canSeek) this.timeline.markSection();
+  }
+
+  private loopSection(section: [number, number] | null): void {
+    if (!section) return this.client.send({ do: "loop", on: false });
+    this.client.send({ do: "seek", frame: section[0] });
+    this.client.send({ do: "loop", on: true, from: section[0], to: section[1] });
+    this.client.send({ do: "play" });
   }
 
   setSpeed(factor: number): void {
@@ -158,15 +181,15 @@ export class Player {
     });
   }
 
-  seek(frame: number): void {
-    if (this.frames === null || !this.model.can("seek")) return;
-    this.wanted = Math.max(0, Math.min(this.frames - 1, frame));
-    this.slider.value = String(this.wanted);
-  }
-
-  private scrub(): void {
-    this.pause();
-    this.seek(this.slider.valueAsNumber);
+  seek(step: number): void {
+    if (!this.canSeek) return;
+    const [first, last] = this.model.range;
+    if (step > 0 && step < first) {
+      this.client.emit("notice", `Step ${readable(step)} is no longer kept. Steps ${readable(first)} to ${readable(last)} are.`);
+      return;
+    }
+    this.wanted = Math.max(first, Math.min(last, step));
+    this.timeline.slider.value = String(this.wanted);
   }
 
   /** Sends at most one seek per drawn frame, however fast the slider moves. */
@@ -179,40 +202,12 @@ export class Player {
     this.wanted = null;
   }
 
-  private get events() {
-    return this.model.history.events[this.kinds.value as EventKind];
-  }
-
-  /** Goes to the next or previous frame in which pairs of objects begin or end. */
+  /** Goes to the next or previous step in which pairs of objects begin or end. */
   jump(direction: 1 | -1): void {
-    if (!this.model.can("seek")) return;
-    const now = this.wanted ?? this.asked ?? this.model.frame?.text.step ?? 0;
-    const { begin, end } = this.events;
-    let best: number | null = null;
-    for (const { frame } of [...begin, ...end])
-      if ((frame - now) * direction > 0 && (best === null || (best - frame) * direction > 0)) best = frame;
+    if (!this.canSeek) return;
+    const best = this.timeline.find(this.wanted ?? this.asked ?? this.model.frame?.text.step ?? 0, direction);
     if (best === null) return;
     this.pause();
     this.seek(best);
-  }
-
-  /** Draws begin events above the timeline and end events below it. */
-  private drawMarks(): void {
-    const { marks, frames } = this;
-    const ratio = devicePixelRatio;
-    const { clientWidth: width, clientHeight: height } = marks;
-    if (width === 0 || frames === null) return;
-    marks.width = width * ratio;
-    marks.height = height * ratio;
-    const context = marks.getContext("2d")!;
-    context.scale(ratio, ratio);
-    const inset = 8;  // half the width of the slider's handle
-    const place = (frame: number) => inset + ((width - 2 * inset) * frame) / Math.max(1, frames - 1);
-    const { begin, end } = this.events;
-    for (const [events, colour, top] of [[begin, OKABE_ITO.vermillion, 0], [end, OKABE_ITO.blue, height - 6]] as const) {
-      context.fillStyle = colour;
-      const columns = new Set(events.map(({ frame }) => Math.round(place(frame))));
-      for (const x of columns) context.fillRect(x - 0.75, top, 1.5, 6);
-    }
   }
 }

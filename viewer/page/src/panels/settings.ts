@@ -10,13 +10,15 @@ const FIRST = ["bounding_volume", "broad_phase", "contacts", "max_level", "leaf_
 
 export class Settings {
   readonly element: HTMLElement;
-  private readonly detection = h("div");
+  private readonly detection = h("fieldset");
+  private readonly chosen = h("p", { class: "hint" }, "The program chooses its options. Go back to a past step to try others.");
   private readonly fields = new Map<string, Field>();
   private described = "";
 
   constructor(private readonly model: Model, private readonly client: Client) {
     this.element = h("div", { class: "settings" }, this.detection, h("h3", {}, "Drawing"), ...this.drawing());
     model.on("scene", () => this.update());
+    model.on("frame", () => this.allow());
   }
 
   private update(): void {
@@ -24,7 +26,15 @@ export class Settings {
     const described = JSON.stringify(scene.settings);
     if (described !== this.described) this.build(scene.settings);
     this.described = described;
+    this.allow();
     for (const [key, field] of this.fields) field.update(key === "objects" ? scene.objects.length : (scene as unknown as Record<string, unknown>)[key]);
+  }
+
+  /** The program chooses its options, but not those with which a past step is detected again. */
+  private allow(): void {
+    const isChosen = this.model.scene?.source === "program" && !this.model.frame?.text.past;
+    if (this.detection.disabled !== isChosen) this.detection.disabled = isChosen;
+    this.chosen.hidden = !isChosen;
   }
 
   private build(settings: Setting[]): void {
@@ -38,7 +48,7 @@ export class Settings {
     const restarting = list(({ restarts }) => restarts);
     this.detection.hidden = settings.length === 0;
     this.detection.replaceChildren(
-      h("h3", {}, "Collision detection"),
+      h("h3", {}, "Collision detection"), this.chosen,
       ...list(({ key }) => FIRST.includes(key)),
       h("details", {}, h("summary", {}, "More options"), ...list(({ key, restarts }) => !restarts && !FIRST.includes(key))),
       ...(restarting.length > 0 ? [h("h3", {}, "Simulation"), h("p", { class: "hint" }, "A change here restarts the simulation."), ...restarting] : []),

@@ -103,6 +103,12 @@ export interface FrameText {
   playing: boolean;
   speed: number;
   loop?: boolean;
+  /** The first and the last step of the section that loops. */
+  section: [number, number] | null;
+  /** The first and the last step that can be shown. */
+  range: [number, number];
+  /** A kept step of a simulation or a program, not the newest. */
+  past: boolean;
   octree_levels: (number | null)[];
   omitted: Record<string, number>;
   /** Kinds of contacts for which there was nothing to test, and why. */
@@ -114,7 +120,7 @@ export interface FrameText {
 /** What begins and ends: contacts, collisions of the narrow phase, overlaps of the objects' volumes. */
 export const EVENT_KINDS = ["contact", "narrow_phase", "volume"] as const;
 export type EventKind = (typeof EVENT_KINDS)[number];
-/** In a frame two objects per event; in a series the frame and two objects. */
+/** For each event the step, or the frame of a recording, and two objects. */
 export type EventData = Record<EventKind, { begin: Uint32Array; end: Uint32Array }>;
 
 export interface SceneMessage {
@@ -349,9 +355,15 @@ function frameText(json: Record<string, unknown>): FrameText {
   need(typeof f.playing === "boolean", "playing");
   need(isNumber(f.speed), "speed");
   f.octree_levels ??= [];
+  f.section ??= null;
+  f.range ??= [f.step, f.step];
+  f.past ??= false;
   f.omitted ??= {};
   f.untested ??= [];
   need(Array.isArray(f.octree_levels) && f.octree_levels.every((level) => level === null || isCount(level)), "octree_levels");
+  const isRange = (value: unknown) => Array.isArray(value) && value.length === 2 && value.every(isCount);
+  need(isRange(f.range), "range");
+  need(f.section === null || isRange(f.section), "section");
   need(typeof f.omitted === "object" && Object.values(f.omitted).every(isCount), "omitted");
   need(Array.isArray(f.untested) && f.untested.every((entry) => isText(entry?.kind) && isText(entry?.reason)), "untested");
   return f;
@@ -371,10 +383,9 @@ function checkPairs(name: string, data: Uint32Array, stride: number, at: number,
     if (data[i + at]! >= objects || data[i + at + 1]! >= objects) fail(`its section ${name} names an object that does not exist`);
 }
 
-/** The objects are the last two numbers of each event. */
-function checkEvents(events: EventData, stride: number, objects: number): void {
+function checkEvents(events: EventData, objects: number): void {
   for (const kind of EVENT_KINDS)
-    for (const side of ["begin", "end"] as const) checkPairs(`${kind}_${side}`, events[kind][side], stride, stride - 2, objects);
+    for (const side of ["begin", "end"] as const) checkPairs(`${kind}_${side}`, events[kind][side], 3, 1, objects);
 }
 
 function checkContacts(contacts: Uint32Array, points: number, kinds: number): void {
@@ -429,7 +440,7 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   for (const shapes of [octreeBoxes, octreeSpheres, octreeEdges, collidingBoxes, collidingSpheres, collidingEdges])
     for (const object of shapes.keys()) if (object >= scene.vertices.length) fail("it has an octree of an object that does not exist");
   checkPairs("object_pairs", frame.objectPairs, 2, 0, scene.vertices.length);
-  checkEvents(frame.events, 2, scene.vertices.length);
+  checkEvents(frame.events, scene.vertices.length);
   checkIds("contacts", frame.contacts, 8, [0, 2], scene.triangles);
   checkContacts(frame.contacts, frame.contactPoints.length / 8, scene.kinds.contact.length);
   checkIds("candidates", frame.candidates, 4, [0, 2], scene.triangles);
@@ -447,7 +458,7 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
 
 function readSeries(sections: Sections, scene: SceneCounts): SeriesMessage {
   const events = sections.events("series_");
-  checkEvents(events, 3, scene.vertices.length);
+  checkEvents(events, scene.vertices.length);
   return { kind: "series", values: sections.one("series", new Float64Array(0)), events };
 }
 

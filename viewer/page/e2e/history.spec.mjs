@@ -1,0 +1,227 @@
+// The past: steps that a simulation or a program has taken, and recordings that grow.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { join } from "node:path";
+import { pause, scenes, settled, step, until } from "./harness.mjs";
+
+const FOR_EVER = 1_000_000;
+
+const facts = (page) => page.evaluate(() => {
+  const { text, contacts, objectPairs } = supple.model.frame;
+  return { step: text.step, past: text.past, playing: text.playing, range: text.range, contacts: contacts.length / 8, pairs: objectPairs.length / 2 };
+});
+const isAt = (page, wanted) => until(page, (wanted) => supple.model.frame.text.step === wanted, wanted);
+
+/** A simulation that has paused after some steps. */
+async function simulated(stage, scene = "nine.toml", steps = 60) {
+  const { page } = await stage.view(join(scenes, scene));
+  await until(page, (steps) => supple.model.frame.text.step >= steps, steps);
+  await pause(page);
+  return page;
+}
+
+async function scrubsTheTimeLine(stage) {
+  const page = await simulated(stage);
+  const last = await step(page);
+  const slider = page.getByRole("slider", { name: "Timeline" });
+  const box = await slider.boundingBox();
+  await page.mouse.move(box.x + box.width - 8, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 15 });
+  await page.mouse.up();
+  await until(page, () => supple.model.frame.text.past);
+  await settled(page);
+  const middle = await facts(page);
+  assert.ok(Math.abs(middle.step - last / 2) <= 3, `at ${middle.step} of ${last}`);
+  assert.deepEqual(middle.range, [0, last]);
+  const column = await page.evaluate(() => supple.model.history.column("contacts")[supple.model.frame.text.step]);
+  assert.equal(middle.contacts, column, "the contacts of the past are those that were found then");
+  await page.getByRole("button", { name: "Newest step" }).click();
+  await until(page, () => !supple.model.frame.text.past);
+  assert.equal(await step(page), last);
+  assert.ok(await page.getByRole("button", { name: "Newest step" }).isHidden());
+  await page.getByRole("button", { name: "Play" }).click();
+  await until(page, (last) => supple.model.frame.text.step > last && !supple.model.frame.text.past, last);
+}
+
+async function stepsBackByKeysAndPlaysOn(stage) {
+  const page = await simulated(stage);
+  const last = await step(page);
+  await page.getByRole("img", { name: "3D view" }).focus();
+  for (let i = 1; i <= 3; ++i) {
+    await page.keyboard.press("ArrowLeft");
+    await isAt(page, last - i);
+  }
+  await page.keyboard.press("ArrowRight");
+  await isAt(page, last - 2);
+  assert.ok((await facts(page)).past);
+  await page.keyboard.press("Home");
+  await isAt(page, 0);
+  await page.keyboard.press("End");
+  await until(page, () => !supple.model.frame.text.past);
+  await page.keyboard.press("ArrowLeft");
+  await isAt(page, last - 1);
+  await page.keyboard.press("Space");
+  await until(page, (last) => supple.model.frame.text.step > last + 3, last);
+  assert.equal((await facts(page)).past, false);
+}
+
+/** An event is named by its pair, at the pointer and after a jump. */
+async function eventsAreNamed(stage) {
+  const page = await simulated(stage, "nine.toml", 100);
+  const events = await page.evaluate(() => {
+    const { begin, end } = supple.model.history.events.contact;
+    return [...begin, ...end].map(({ frame, a, b }) => ({ frame, names: [supple.model.objects[a].name, supple.model.objects[b].name] })).filter(({ frame }) => frame > 0);
+  });
+  assert.ok(events.length > 2, `${events.length} events`);
+  const newest = Math.max(...events.map(({ frame }) => frame));
+  await page.getByRole("button", { name: "Previous event" }).click();
+  const named = page.getByRole("status", { name: "Event" });
+  await until(page, () => supple.model.frame.text.past || document.querySelector(".named").textContent !== "");
+  const at = events.find(({ frame }) => frame === newest && newest < 1e9);
+  const text = await named.innerText();
+  assert.match(text, /^\d+: .+ – .+ (began|ended) to touch/);
+  if (newest < (await facts(page)).range[1]) assert.ok(text.includes(at.names[0]) && text.includes(at.names[1]), text);
+  const first = Math.min(...events.map(({ frame }) => frame));
+  const box = await page.getByRole("slider", { name: "Timeline" }).boundingBox();
+  const [from, to] = (await facts(page)).range;
+  await page.mouse.move(box.x + 8 + ((box.width - 16) * (first - from)) / (to - from), box.y + 3);
+  await until(page, (first) => document.querySelector(".named").textContent.includes(`${first}: `), first);
+}
+
+async function aSectionLoops(stage) {
+  const page = await simulated(stage);
+  const last = await step(page);
+  const section = page.locator(".player button", { hasText: "A–" });
+  const view = page.getByRole("img", { name: "3D view" });
+  await view.focus();
+  for (let i = 0; i < 8; ++i) await page.keyboard.press("ArrowLeft");
+  await isAt(page, last - 8);
+  await section.click();
+  assert.match(await section.getAttribute("aria-label"), new RegExp(`starts at step ${last - 8}`));
+  await view.focus();
+  for (let i = 0; i < 4; ++i) await page.keyboard.press("ArrowRight");
+  await isAt(page, last - 4);
+  await page.evaluate(() => {
+    window.steps = [];
+    supple.model.on("frame", ({ text }) => steps.push(text.step));
+  });
+  await page.keyboard.press("Shift+L");
+  await until(page, () => steps.filter((at, i) => at < steps[i - 1]).length >= 2);
+  const seen = await page.evaluate(() => steps);
+  assert.ok(Math.min(...seen) === last - 8 && Math.max(...seen) === last - 4, `${Math.min(...seen)} to ${Math.max(...seen)}`);
+  assert.equal(await section.getAttribute("aria-pressed"), "true");
+  await section.click();
+  await until(page, (last) => supple.model.frame.text.step > last, last);
+}
+
+async function otherOptionsDetectAPastStepAgain(stage) {
+  const page = await simulated(stage);
+  await page.getByRole("img", { name: "3D view" }).focus();
+  for (let i = 0; i < 5; ++i) await page.keyboard.press("ArrowLeft");
+  await until(page, () => supple.model.frame.text.past);
+  await settled(page);
+  const before = await facts(page);
+  await page.getByRole("tab", { name: "Settings" }).click();
+  await page.getByLabel("Bounding volume").selectOption("sphere");
+  await until(page, () => supple.model.scene.bounding_volume === "sphere" && supple.model.frame);
+  const after = await facts(page);
+  assert.deepEqual([after.step, after.past, after.contacts], [before.step, true, before.contacts]);
+  await page.keyboard.press("Escape");
+}
+
+async function plotsSeek(stage) {
+  const page = await simulated(stage);
+  await page.getByRole("tab", { name: "Plots" }).click();
+  const plot = page.locator("figure .u-over").first();
+  await plot.waitFor();
+  const box = await plot.boundingBox();
+  await page.mouse.move(box.x + box.width * 0.25, box.y + 20);
+  await page.mouse.click(box.x + box.width * 0.5, box.y + 20);
+  await until(page, () => supple.model.frame.text.past);
+  await settled(page);
+  const { step: at, range } = await facts(page);
+  assert.ok(Math.abs(at - range[1] / 2) < range[1] / 6, `at ${at} of ${range[1]}`);
+}
+
+async function keepsAsMuchAsItsMemoryAllows(stage) {
+  const { page } = await stage.view(join(scenes, "nine.toml"), "--history", "1");
+  await until(page, () => supple.model.frame.text.step > 40 && supple.model.frame.text.range[0] > 0);
+  await pause(page);
+  const { range } = await facts(page);
+  assert.ok(range[0] > 1 && range[0] < range[1]);
+  await page.evaluate((first) => supple.client.ask({ do: "seek", frame: first - 1 }).catch((error) => (window.refusal = error.message)), range[0]);
+  assert.match(await page.evaluate(() => refusal), new RegExp(`${range[0]} to ${range[1]}`));
+  await page.getByRole("tab", { name: "Plots" }).click();
+  const plot = page.locator("figure .u-over").first();
+  await plot.waitFor();
+  const box = await plot.boundingBox();
+  await page.mouse.move(box.x + 20, box.y + 20);
+  await page.mouse.click(box.x + 3, box.y + 20);
+  await page.getByRole("log").getByText(/is no longer kept/).waitFor();
+  const none = await stage.view(join(scenes, "nine.toml"), "--history", "0");
+  await until(none.page, () => supple.model.frame.text.step > 3);
+  assert.ok(await none.page.getByRole("slider", { name: "Timeline" }).isHidden());
+}
+
+async function thePastCannotBePulled(stage) {
+  const page = await simulated(stage);
+  await page.keyboard.press("ArrowLeft");
+  await until(page, () => supple.model.frame.text.past);
+  await page.evaluate(() => supple.client.ask({ do: "grab", object: 0, vertex: 0 }).catch((error) => (window.refusal = error.message)));
+  assert.match(await page.evaluate(() => refusal), /go to the newest step/);
+}
+
+async function everythingIsReachableInANarrowWindow(stage) {
+  const page = await simulated(stage);
+  for (const [width, colorScheme] of [[1440, "light"], [800, "dark"], [390, "light"]]) {
+    await page.setViewportSize({ width, height: 844 });
+    await page.emulateMedia({ colorScheme });
+    for (const name of ["−1 step", "First frame", "Previous event", "Loop"]) {
+      const button = page.getByRole("button", { name, exact: true });
+      await button.click({ trial: true });
+      const box = await button.boundingBox();
+      assert.ok(box.x >= 0 && box.x + box.width <= width, `${name} at ${width}`);
+    }
+    const slider = await page.getByRole("slider", { name: "Timeline" }).boundingBox();
+    assert.ok(slider.width >= 70 && slider.x + slider.width <= width, `a timeline of ${slider.width} at ${width}`);
+  }
+}
+
+/** The page shows the frames of a recording as they are written. */
+async function followsARecording(stage) {
+  const file = stage.file("run.h5");
+  const writer = spawn(stage.supple, ["simulate", join(scenes, "nine.toml"), "--steps", String(FOR_EVER), "--record", file, "--quiet"]);
+  stage.programs.push({ child: writer, stop: (signal) => writer.kill(signal) });
+  let page;
+  for (let tries = 0; !page; ++tries) {
+    await new Promise((done) => setTimeout(done, 500));
+    page = await stage.view(file, "--follow").then((opened) => opened.page, (error) => { if (tries > 20) throw error; });
+  }
+  const first = await page.evaluate(() => supple.model.frame.text.range[1]);
+  await until(page, (first) => supple.model.frame.text.range[1] > first, first);
+  await until(page, (first) => supple.model.frame.text.step > first, first);
+  assert.ok((await facts(page)).playing);
+  const rows = await page.evaluate(() => [supple.model.history.frames.length, supple.model.frame.text.range[1] + 1]);
+  assert.ok(rows[0] >= first + 1, `${rows} rows in the plots`);
+  await page.getByRole("button", { name: "First frame" }).click();
+  await isAt(page, 0).catch(() => {});  // it plays on
+  await page.getByRole("button", { name: "Pause" }).click();
+  await until(page, () => !supple.model.frame.text.playing);
+  await page.getByRole("button", { name: "Last frame" }).click();
+  await until(page, () => supple.model.frame.text.step > 5);
+  writer.kill("SIGINT");
+}
+
+export const tests = [
+  ["the past scrubs", scrubsTheTimeLine],
+  ["keys step back, and it plays on", stepsBackByKeysAndPlaysOn],
+  ["events are named by their pair", eventsAreNamed],
+  ["a section loops", aSectionLoops],
+  ["other options detect a past step again", otherOptionsDetectAPastStepAgain],
+  ["plots seek in the past", plotsSeek],
+  ["the memory of the past is bounded", keepsAsMuchAsItsMemoryAllows],
+  ["the past cannot be pulled", thePastCannotBePulled],
+  ["the timeline is reachable at every width", everythingIsReachableInANarrowWindow],
+  ["follows a recording that grows", followsARecording],
+];
