@@ -13,6 +13,7 @@
 #include <list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -33,6 +34,7 @@ using boost::system::error_code;
 using namespace std::chrono_literals;
 
 constexpr std::size_t largest_command = std::size_t{1} << 20;
+constexpr std::size_t largest_result = std::size_t{1} << 30;
 /// Stop reading when this many bytes of commands wait for the current step to end.
 constexpr std::size_t most_waiting = std::size_t{4} << 20;
 /// Most connections that have not shown the token, from one address and in all. A new one replaces the
@@ -63,6 +65,8 @@ class Page : public std::enable_shared_from_this<Page> {
     std::function<void()> came, left, sent;
     /// Returns whether to continue reading now.
     std::function<bool(std::string)> command;
+    /// Of a binary message; empty when the page may not send any.
+    std::function<void(std::span<const std::byte>)> result{};
   };
 
   Page(beast::tcp_stream stream, std::chrono::milliseconds patience) : socket_(std::move(stream)) {
@@ -78,6 +82,7 @@ class Page : public std::enable_shared_from_this<Page> {
 
   void accept(const http::request<http::empty_body>& request, Listener listener) {
     listener_ = std::move(listener);
+    if (listener_.result) socket_.read_message_max(largest_result);
     socket_.async_accept(request, [self = shared_from_this()](error_code error) {
       if (error) return;
       self->listener_.came();
@@ -107,7 +112,7 @@ class Page : public std::enable_shared_from_this<Page> {
  private:
   void read() {
     socket_.async_read_some(
-        text_, largest_command + 1 - text_.size(),
+        text_, (listener_.result ? largest_result : largest_command) + 1 - text_.size(),
         [self = shared_from_this()](error_code error, std::size_t) { self->take(error); });
   }
 
@@ -119,6 +124,14 @@ class Page : public std::enable_shared_from_this<Page> {
     // After a close command, messages are ignored, but must be read to receive the page's own close.
     if (is_closing_) {
       text_.consume(text_.size());
+      return read();
+    }
+    const bool is_result = !socket_.got_text() && listener_.result;
+    if (is_result) {
+      if (socket_.is_message_done()) {
+        listener_.result({static_cast<const std::byte*>(text_.data().data()), text_.size()});
+        text_.consume(text_.size());
+      }
       return read();
     }
     if (!socket_.got_text() || text_.size() > largest_command) {
@@ -378,7 +391,9 @@ class Server::Implementation {
     listener.left = [this, number] {
       session_.page_left(number);
       if (page_number_ == number) page_.reset();
+      if (options_.drawing.left) options_.drawing.left();
     };
+    listener.result = options_.drawing.result;
     listener.sent = [this, number] { session_.message_sent(number); };
     listener.command = [this, number](std::string text) {
       return session_.command(number, std::move(text)) < most_waiting;

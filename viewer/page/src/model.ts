@@ -197,6 +197,8 @@ export class Model extends Emitter<ModelEvents> {
   up: "y" | "z" = "y";
   pointSize = 5;
   normalLength = 24;  // in CSS pixels
+  /** Part of the names of objects: the list of contacts has only objects with it. */
+  filter = "";
 
   tool: Tool = "select";
   selection: Selection | null = null;
@@ -294,6 +296,11 @@ export class Model extends Emitter<ModelEvents> {
         for (let i = 0; i < data.length; i += 2) history.events[kind][side].push({ frame: step, a: data[i]!, b: data[i + 1]! });
       }
     this.emit("history", null);
+  }
+
+  /** The unit of lengths; empty when the scene has none. */
+  get unit(): string {
+    return this.objects.some(({ isBody, kind }) => isBody || kind === "rigid") ? "m" : "";
   }
 
   /** Whether time changes anything. */
