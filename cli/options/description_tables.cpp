@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <regex>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -333,8 +332,10 @@ void print_view_members() {
       "  words: readonly string[];\n}}\n\nexport const VIEW_MEMBERS: readonly ViewMember[] = [\n");
   const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : x < 0 ? "-Infinity" : "Infinity"; };
   // `"off", "x"` of `off x`.
-  const auto quoted = [](const std::string& words) {
-    return words.empty() ? words : "\"" + std::regex_replace(words, std::regex(" "), "\", \"") + "\"";
+  const auto quoted = [](std::string_view words) {
+    std::string list;
+    for (const char c : words) list += c == ' ' ? std::string("\", \"") : std::string(1, c);
+    return list.empty() ? list : fmt::format("\"{}\"", list);
   };
   for (const viewer::ViewMember& member : viewer::view_members)
     fmt::print(

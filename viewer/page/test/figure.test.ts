@@ -3,6 +3,7 @@ import { test } from "node:test";
 import { DepthBuffer, edgesOf, outlineOf, project, visibleParts } from "../src/capture/lines";
 import { drawOverlay } from "../src/capture/overlay";
 import { svgPen } from "../src/capture/pen";
+import { plotSvg } from "../src/capture/plot_svg";
 import { resolutionChunk } from "../src/capture/png";
 
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
@@ -59,4 +60,14 @@ test("the overlay has the objects that fit, and a bar of a round length", () => 
   assert.ok(/>and 44 more</.test(svg), svg);
   assert.ok(/>1 m \(at the target\)</.test(svg), svg);
   assert.ok(/<rect x="288" y="184" width="100"/.test(svg), svg);
+});
+
+test("a plot as SVG has its lines, with gaps, and round ticks", () => {
+  const svg = plotSvg("Pairs & more", "frame", [10, 11, 12, 13], [
+    { label: "pairs", colour: "#0072b2", values: [0, 4, NaN, 8] }, { label: "candidates", colour: "#e69f00", values: [1, 1, 1, 1] },
+  ]);
+  assert.ok(svg.includes(">Pairs &#38; more<"), svg);
+  assert.equal(svg.match(/stroke-width="1.5"/g)!.length, 2);
+  assert.ok(/d="M56 204L193.33 124M468 44" stroke="#0072b2"/.test(svg), svg);
+  for (const tick of ["0", "2", "4", "6", "8", "10", "11", "12", "13"]) assert.ok(svg.includes(`>${tick}</text>`), tick);
 });
