@@ -234,7 +234,7 @@ class Render(ProgramTest):
             BODY.replace("random_speed = 5", 'integrator = "verlet", stiffness = 1e9, random_speed = 5'),
         )
         done = self.run_here("render", scene, "--size", "80x60", "--frames", "0-5000", "-o", "%d.png")
-        self.assert_one_line_error(done, "The session has failed", "of 5001 pictures are saved")
+        self.assert_one_line_error(done, "The session has failed", "of 5,001 pictures are saved")
         self.assertTrue((self.folder / "0.png").exists())
 
     def start(self):
@@ -252,7 +252,7 @@ class Render(ProgramTest):
             process.send_signal(number)
             out, error = process.communicate(timeout=60)
             self.assertEqual((process.returncode, out), (128 + number, ""))
-            self.assertRegex(error, r"^supple: interrupted after \d+ of 100,?001 pictures\n$")
+            self.assertRegex(error, r"^supple: interrupted after \d+ of 100,001 pictures\n$")
             self.assert_nothing_is_left()
             for path in self.folder.glob("a_*"):
                 self.assertRegex(path.name, r"^a_\d{6}\.png$")

@@ -38,7 +38,7 @@ async function arrange(page) {
   await page.getByRole("button", { name: /^left/ }).click();
   await page.getByLabel("Opacity of left").fill("0.4");
   await page.getByLabel("Colour of left").fill("#aa3366");
-  await page.keyboard.press("Escape");
+  await page.evaluate(() => supple.model.clearSelection());  // it is not part of a view
   await page.getByRole("tab", { name: "Contacts" }).click();
   await page.getByRole("searchbox").fill("left");
   await settled(page);
@@ -46,17 +46,18 @@ async function arrange(page) {
 
 async function savedChangedLoaded(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
   const first = await picture(page);
   const plain = await saveView(stage, page);
   await arrange(page);
   const arranged = await picture(page);
-  assert.notEqual(arranged, first);
+  assert.ok(arranged !== first);
   const file = await saveView(stage, page);
   assert.equal(JSON.parse(readFileSync(file)).objects.left.colour, "#aa3366");
 
   await loadView(page, plain);
   await settled(page);
-  assert.equal(await picture(page), first, "the first view is another picture");
+  assert.ok((await picture(page)) === first, "the first view is another picture");
   assert.equal(await page.getByRole("checkbox", { name: "Object octrees" }).isChecked(), false);
   assert.equal(await page.getByRole("searchbox").inputValue(), "");
   assert.equal(await page.getByRole("button", { name: "Orthographic" }).count(), 1);
@@ -64,7 +65,7 @@ async function savedChangedLoaded(stage) {
   await dropFile(page, readFileSync(file, "utf8"));
   await until(page, () => supple.counts().boxes > 0);
   await settled(page);
-  assert.equal(await picture(page), arranged, "the loaded view is another picture");
+  assert.ok((await picture(page)) === arranged, "the loaded view is another picture");
   assert.equal(await page.getByRole("searchbox").inputValue(), "left");
   assert.equal(await page.getByRole("combobox", { name: "Slice", exact: true }).inputValue(), "x");
 
@@ -72,7 +73,7 @@ async function savedChangedLoaded(stage) {
   const { page: begun } = await stage.view(stage.file("balls.toml"), "--view", file);
   await until(begun, () => supple.counts().boxes > 0);
   await settled(begun);
-  assert.equal(await picture(begun), arranged, "the program begins with another picture");
+  assert.ok((await picture(begun)) === arranged, "the program begins with another picture");
   const exported = stage.file("page.html");
   await runProgram(stage.supple, ["view", stage.file("balls.toml"), "--export", exported, "--view", file]);
   const carried = await stage.page();
@@ -80,22 +81,23 @@ async function savedChangedLoaded(stage) {
   await hasFrame(carried);
   await until(carried, () => supple.counts().boxes > 0);
   await settled(carried);
-  assert.equal(await picture(carried), arranged, "the exported page begins with another picture");
+  assert.ok((await picture(carried)) === arranged, "the exported page begins with another picture");
 }
 
 async function malformedFilesChangeNothing(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
   const before = await picture(page);
   for (const [text, sentence] of [
     ["{", "This is no view file: it is not JSON"],
-    ['{"version": 1, "layers": {"wireframe": true}, "marks": {"slice_at": 3}}', "marks.slice_at is not a finite number from 0 to 1. Nothing is changed."],
+    ['{"version": 1, "layers": {"wireframe": true}, "marks": {"slice_at": 3}}', "marks.slice_at is not a number from 0 to 1. Nothing is changed."],
     ['{"version": 1, "layer": {}}', "layer is unknown. Nothing is changed."],
   ]) {
     await loadView(page, { name: "view.json", mimeType: "application/json", buffer: Buffer.from(text) });
     await page.getByRole("log").getByText(sentence).waitFor();
   }
   await settled(page);
-  assert.equal(await picture(page), before);
+  assert.ok((await picture(page)) === before);
 }
 
 /** The address that a click copies. */
@@ -122,7 +124,7 @@ async function linkToAFrame(stage) {
   await other.goto(link);
   await until(other, () => window.supple?.model.frame?.text.step === 12);
   await settled(other);
-  assert.equal(await picture(other), seen);
+  assert.ok((await picture(other)) === seen);
   assert.equal(await other.evaluate(() => supple.playing), false);
 
   const damaged = await stage.page();
@@ -153,7 +155,7 @@ async function linkToAStep(stage) {
   await until(other, (at) => supple.model.frame.text.step === at, at);
   assert.deepEqual(await other.evaluate(() => [...supple.model.positions]), seen);
   const [a, b] = [await camera(page), await camera(other)];
-  assert.deepEqual(b, a);
+  for (const part of ["position", "target"]) b[part].forEach((x, i) => assert.ok(Math.abs(x - a[part][i]) < 1e-9, `${x} is not ${a[part][i]}`));
 }
 
 /** Reads the chunks of a PNG. */
@@ -190,7 +192,7 @@ async function figureInMillimetres(stage) {
   const drawn = readFileSync(await save());
   const colourAt = (png, x, y) =>
     page.evaluate(async ([data, x, y]) => {
-      const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+      const image = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0))]));
       const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
       context.drawImage(image, 0, 0);
       return [...context.getImageData(x, y, 1, 1).data];
@@ -240,7 +242,7 @@ async function renderDrawsTheView(stage) {
   // Pages of tests draw without antialiasing, so only edges differ.
   const different = await page.evaluate(async (files) => {
     const [a, b] = await Promise.all(files.map(async (data) => {
-      const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+      const image = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0))]));
       const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
       context.drawImage(image, 0, 0);
       return context.getImageData(0, 0, image.width, image.height).data;
