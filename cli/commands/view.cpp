@@ -19,7 +19,6 @@
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
 #include "inputs/inputs.hpp"
-#include "view_file/view_file.hpp"
 #include "server/access.hpp"
 #include "server/browser_visit.hpp"
 #include "server/server.hpp"
@@ -27,6 +26,7 @@
 #include "session/packed/packed_scene.hpp"
 #include "session/session.hpp"
 #include "supple/error.hpp"
+#include "view_file/view_file.hpp"
 
 namespace supple::cli {
 namespace {
@@ -56,8 +56,7 @@ int write_page(const viewer::SceneView& show, const ViewOptions& options, std::s
   const auto most = static_cast<double>(viewer::largest_page);
   check_page_size(options.page_file, size_of_frames(show), most_compression * most);
   const std::vector<std::byte> packed = viewer::pack(show);
-  const std::string page =
-      viewer::page_with_cargo(template_page, packed, viewer::embedded_module());
+  const std::string page = viewer::page_with_cargo(template_page, packed, viewer::embedded_module());
   check_page_size(options.page_file, static_cast<double>(page.size()), most);
   viewer::replace_file(options.page_file, page);
   fmt::print("{}: {:.2f} MB, {}{}\n", one_line(options.page_file), static_cast<double>(page.size()) / 1e6,
@@ -101,8 +100,9 @@ int run_view(const ViewOptions& options) {
   const std::string view = options.view_file.empty() ? "" : viewer::read_view(options.view_file);
   Input input = read_view_input(options);
   print_notes(input);
-  const std::string page = view.empty() ? std::string(viewer::embedded_page())
-                                        : viewer::page_with_json(viewer::embedded_page(), "supple-view", view);
+  const std::string page = view.empty()
+                               ? std::string(viewer::embedded_page())
+                               : viewer::page_with_json(viewer::embedded_page(), "supple-view", view);
   check_output_names({{"--export", options.page_file}, {"--view", options.view_file}}, input.files);
   apply(options, input);
   viewer::SceneView show = build_scene_view(input, options);

@@ -330,7 +330,9 @@ void print_view_members() {
       "  /** Of numbers; `above` excludes the lowest number. */\n  low: number;\n  high: number;\n  above: "
       "boolean;\n"
       "  words: readonly string[];\n}}\n\nexport const VIEW_MEMBERS: readonly ViewMember[] = [\n");
-  const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : x < 0 ? "-Infinity" : "Infinity"; };
+  const auto number = [](double x) {
+    return std::isfinite(x) ? fmt::format("{}", x) : x < 0 ? "-Infinity" : "Infinity";
+  };
   // `"off", "x"` of `off x`.
   const auto quoted = [](std::string_view words) {
     std::string list;
@@ -341,7 +343,8 @@ void print_view_members() {
     fmt::print(
         "  {{ path: \"{}\", kind: \"{}\", range: \"{}\", low: {}, high: {}, above: {}, words: [{}] }},\n",
         member.path, kinds_of_view_values[static_cast<std::size_t>(member.kind)], viewer::text_of(member),
-        number(member.range.lowest), number(member.range.highest), member.range.excludes_lowest, quoted(member.words));
+        number(member.range.lowest), number(member.range.highest), member.range.excludes_lowest,
+        quoted(member.words));
   fmt::print("];\n");
 }
 

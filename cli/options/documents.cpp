@@ -215,8 +215,8 @@ void print_document(const CLI::App& program, const std::string& name) {
   if (name == "tables") return print_description_tables();
   if (name == "sections") return print_sections();
   if (name == "view-members") return print_view_members();
-  throw CLI::ValidationError("--generate",
-                             fmt::format("'{}' is not one of man, markdown, sections, tables, view-members", name));
+  throw CLI::ValidationError(
+      "--generate", fmt::format("'{}' is not one of man, markdown, sections, tables, view-members", name));
 }
 
 }  // namespace supple::cli

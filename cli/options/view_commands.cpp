@@ -48,7 +48,8 @@ FrameRange parse_frames(const std::string& given) {
   if (!first || !last || !every || !rest.empty() || *last < *first || *every == 0 || *last > most)
     throw CLI::ValidationError(
         "--frames",
-        fmt::format("'{}' is not A, A-B or A-B:STEP with whole numbers A <= B <= {} and STEP >= 1", given, most));
+        fmt::format("'{}' is not A, A-B or A-B:STEP with whole numbers A <= B <= {} and STEP >= 1", given,
+                    most));
   return {*first, *last, *every};
 }
 
@@ -86,15 +87,15 @@ void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dep
   const auto group = [](CLI::Option* option) { return option->group("Pictures"); };
   const auto is_png = [&options] { return !options.is_svg; };
   group(app.add_option_function<std::string>(
-                "-o,--output",
-                [&options](const std::string& name) {
-                  options.output = name;
-                  options.is_svg = name.ends_with(".svg");
-                  if (!options.is_svg && !name.ends_with(".png"))
-                    throw CLI::ValidationError("--output", name + " ends neither in .png nor in .svg");
-                },
-                "PNG files, or SVG files of lines: outlines, wireframes, contact segments and points. %04d "
-                "stands for the number of the frame")
+               "-o,--output",
+               [&options](const std::string& name) {
+                 options.output = name;
+                 options.is_svg = name.ends_with(".svg");
+                 if (!options.is_svg && !name.ends_with(".png"))
+                   throw CLI::ValidationError("--output", name + " ends neither in .png nor in .svg");
+               },
+               "PNG files, or SVG files of lines: outlines, wireframes, contact segments and points. %04d "
+               "stands for the number of the frame")
             ->type_name("FILE")
             ->required());
   group(add_view_file(app, options));
@@ -114,15 +115,17 @@ void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dep
                  "What is behind the objects; theme is that of the page, with its floor and axes"));
   dependences.push_back({group(add_word(app, "--theme", {"light", "dark"}, options.theme,
                                         "Colours of the background and of texts on it")),
-                         [&options] { return options.background != "white"; }, "--background theme or transparent"});
+                         [&options] { return options.background != "white"; },
+                         "--background theme or transparent"});
   group(app.add_flag("--legend", options.legend, "Draw the names of the visible objects with their colours"));
   group(app.add_flag("--scale-bar", options.scale_bar,
                      "Draw a bar of a round length. It holds everywhere in an orthographic view, and at the "
                      "target of the camera in perspective, which the picture then says"));
-  group(app.add_option("--browser", options.browser,
-                       "Chromium that draws the pictures (default: the variable SUPPLE_CHROMIUM, or the first "
-                       "one in PATH)")
-            ->type_name("PATH"));
+  group(
+      app.add_option("--browser", options.browser,
+                     "Chromium that draws the pictures (default: the variable SUPPLE_CHROMIUM, or the first "
+                     "one in PATH)")
+          ->type_name("PATH"));
   dependences.push_back(
       {group(app.add_flag("--gpu", options.uses_graphics_card,
                           "Draw on the graphics card; otherwise the browser draws in software, which gives "

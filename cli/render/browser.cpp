@@ -129,8 +129,7 @@ Browser::Browser(const std::string& program, bool uses_graphics_card) : profile_
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  const int fault =
-      posix_spawn(&process_, program.c_str(), &actions, &attributes, pointers.data(), environ);
+  const int fault = posix_spawn(&process_, program.c_str(), &actions, &attributes, pointers.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);

@@ -8,8 +8,9 @@
 
 namespace supple::cli {
 
-/// The path of a Chromium: `given` when it is not empty, else that in the environment variable SUPPLE_CHROMIUM,
-/// else the first in PATH. Throws `Error` when there is none, with the name of the Debian package.
+/// The path of a Chromium: `given` when it is not empty, else that in the environment variable
+/// SUPPLE_CHROMIUM, else the first in PATH. Throws `Error` when there is none, with the name of the Debian
+/// package.
 std::string find_browser(const std::string& given);
 
 /// A Chromium without a window. It has a profile of its own in the folder of temporary files, and ends when

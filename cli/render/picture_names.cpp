@@ -11,9 +11,10 @@ namespace supple::cli {
 
 PictureNames::PictureNames(const std::string& pattern) {
   const auto fail = [&] [[noreturn]] {
-    throw Error(fmt::format("--output: {}: write the place of the number once, as %d, or as %04d for four "
-                            "digits, and %% for a percent sign",
-                            pattern));
+    throw Error(
+        fmt::format("--output: {}: write the place of the number once, as %d, or as %04d for four "
+                    "digits, and %% for a percent sign",
+                    pattern));
   };
   std::string_view rest = pattern;
   while (!rest.empty()) {

@@ -24,12 +24,12 @@
 #include "inputs/inputs.hpp"
 #include "render/browser.hpp"
 #include "render/picture_names.hpp"
-#include "view_file/view_file.hpp"
 #include "server/server.hpp"
 #include "session/messages/json_text.hpp"
 #include "session/messages/json_value.hpp"
 #include "session/messages/mesh_warnings.hpp"
 #include "supple/error.hpp"
+#include "view_file/view_file.hpp"
 
 namespace supple::cli {
 namespace {
@@ -49,10 +49,11 @@ Pixels size_in_pixels(const RenderOptions& options) {
   const auto pixels = [&](double length) { return std::round(scale * length); };
   const double width = pixels(options.size.width), height = pixels(options.size.height);
   if (!(std::min(width, height) >= 1) || std::max(width, height) > most_pixels)
-    throw Error(fmt::format(
-        "--size: the pictures would have {:.0f} x {:.0f} pixels; choose a size from 1 to {} pixels a side, or "
-        "another --dpi",
-        width, height, most_pixels));
+    throw Error(
+        fmt::format("--size: the pictures would have {:.0f} x {:.0f} pixels; choose a size from 1 to {} "
+                    "pixels a side, or "
+                    "another --dpi",
+                    width, height, most_pixels));
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
@@ -81,7 +82,8 @@ std::string job_of(const RenderOptions& options, Pixels size) {
   return std::string(json.text());
 }
 
-/// A result of the page: a JSON object of the length that the first four bytes say, and the content of a file.
+/// A result of the page: a JSON object of the length that the first four bytes say, and the content of a
+/// file.
 struct PageResult {
   viewer::JsonValue head;
   std::string_view content;
@@ -135,8 +137,8 @@ class Run {
                         fmt::format("{} of {}", taken_, counted(planned_, "picture")), exit_done);
     if (!fault_.empty()) throw Error(fault_ + saved_so_far());
     if (!options_.quiet)
-      fmt::print("{}: {}, {} x {} pixels\n", one_line(options_.output), counted(taken_, "picture"), size_.width,
-                 size_.height);
+      fmt::print("{}: {}, {} x {} pixels\n", one_line(options_.output), counted(taken_, "picture"),
+                 size_.width, size_.height);
     return exit_done;
   }
 
@@ -176,12 +178,13 @@ class Run {
 void check_frames(const RenderOptions& options, const viewer::SceneView& show, const PictureNames& names) {
   if (!options.frames) return;
   if (!names.has_number() && options.frames->count() > 1)
-    throw Error(fmt::format("--output: {}: the pictures of several frames need different names; write %04d "
-                            "where the number of the frame shall be",
-                            options.output));
+    throw Error(
+        fmt::format("--output: {}: the pictures of several frames need different names; write %04d "
+                    "where the number of the frame shall be",
+                    options.output));
   if (show.frames && options.frames->last >= show.frames->count())
-    throw Error(fmt::format("--frames: {} is no frame of {}, which has the frames 0 to {}", options.frames->last,
-                            options.inputs.front(), show.frames->count() - 1));
+    throw Error(fmt::format("--frames: {} is no frame of {}, which has the frames 0 to {}",
+                            options.frames->last, options.inputs.front(), show.frames->count() - 1));
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "export/page_file.hpp"
-#include "view_file/view_members.hpp"
 #include "session/messages/json_value.hpp"
 #include "supple/error.hpp"
+#include "view_file/view_members.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -81,14 +81,16 @@ std::string fault_of(const JsonValue& value, const Members& members, std::size_t
     return is_valid(value, *members.front()) ? "" : path + " is not " + text_of(*members.front());
   }
   if (value.kind != JsonValue::Kind::object)
-    return path.empty() ? "it has no members; a view file is an object { … }" : path + " is not an object { … }";
+    return path.empty() ? "it has no members; a view file is an object { … }"
+                        : path + " is not an object { … }";
   for (std::size_t i = 0; i < value.elements.size(); ++i) {
     const std::string inner = path.empty() ? value.names[i] : path + "." + value.names[i];
     Members candidates;
-    std::copy_if(members.begin(), members.end(), std::back_inserter(candidates), [&](const ViewMember* member) {
-      const std::string_view name = name_at(member->path, depth);
-      return name == "*" || name == value.names[i];
-    });
+    std::copy_if(members.begin(), members.end(), std::back_inserter(candidates),
+                 [&](const ViewMember* member) {
+                   const std::string_view name = name_at(member->path, depth);
+                   return name == "*" || name == value.names[i];
+                 });
     if (candidates.empty()) return inner + " is unknown; docs/view_file.md lists the members";
     std::string fault = fault_of(value.elements[i], candidates, depth + 1, inner);
     if (!fault.empty()) return fault;
@@ -115,7 +117,8 @@ std::string text_of(const ViewMember& member) {
       return "true or false";
     case ViewValue::word: {
       std::string list = member.words;
-      for (std::size_t at = 0; (at = list.find(' ', at)) != std::string::npos; at += 2) list.replace(at, 1, ", ");
+      for (std::size_t at = 0; (at = list.find(' ', at)) != std::string::npos; at += 2)
+        list.replace(at, 1, ", ");
       return "one of " + list;
     }
     case ViewValue::colour:

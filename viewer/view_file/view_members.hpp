@@ -8,8 +8,8 @@
 
 namespace supple::viewer {
 
-// What a view file contains. The checks of the program and of the page (viewer/page/src/protocol/view_members.ts)
-// and the table of docs/view_file.md are made from this list.
+// What a view file contains. The checks of the program and of the page
+// (viewer/page/src/protocol/view_members.ts) and the table of docs/view_file.md are made from this list.
 
 enum class ViewValue : std::uint8_t { number, whole, truth, word, colour, text, point, objects };
 

@@ -19,7 +19,8 @@ TEST(PictureNames, HaveTheNumberOfTheFrame) {
 }
 
 TEST(PictureNames, RefuseOtherUsesOfThePercentSign) {
-  for (const char* pattern : {"%", "a%s.png", "%d%d.png", "%4d.png", "%0.png", "%004d.png", "%-4d.png", "%04"})
+  for (const char* pattern :
+       {"%", "a%s.png", "%d%d.png", "%4d.png", "%0.png", "%004d.png", "%-4d.png", "%04"})
     EXPECT_THROW(PictureNames{pattern}, Error) << pattern;
 }
 

@@ -50,10 +50,13 @@ TEST(ViewFile, NamesTheMemberAndWhatItMustBe) {
   EXPECT_EQ(fault(R"("camera": [])"), "view.json: camera is not an object { … }");
   EXPECT_EQ(fault(R"("camera": {"zoom": 0})"), "view.json: camera.zoom is not a finite number above 0");
   EXPECT_EQ(fault(R"("camera": {"zoom": 1e999})"), "view.json: it is not JSON: the error is at byte 34");
-  EXPECT_EQ(fault(R"("camera": {"target": [1, 2, "3"]})"), "view.json: camera.target is not three finite numbers");
+  EXPECT_EQ(fault(R"("camera": {"target": [1, 2, "3"]})"),
+            "view.json: camera.target is not three finite numbers");
   EXPECT_EQ(fault(R"("layers": {"surface": 1})"), "view.json: layers.surface is not true or false");
-  EXPECT_EQ(fault(R"("octree": {"level": 1.5})"), "view.json: octree.level is not a whole number from -1 to 32");
-  EXPECT_EQ(fault(R"("octree": {"level": 33})"), "view.json: octree.level is not a whole number from -1 to 32");
+  EXPECT_EQ(fault(R"("octree": {"level": 1.5})"),
+            "view.json: octree.level is not a whole number from -1 to 32");
+  EXPECT_EQ(fault(R"("octree": {"level": 33})"),
+            "view.json: octree.level is not a whole number from -1 to 32");
   EXPECT_EQ(fault(R"("marks": {"slice": "off x"})"), "view.json: marks.slice is not one of off, x, y, z");
   EXPECT_EQ(fault(R"("objects": {"a.b": {"colour": "#12345g"}})"),
             "view.json: objects.a.b.colour is not a colour such as #8ecae6");
@@ -65,7 +68,8 @@ TEST(ViewFile, NamesTheMemberAndWhatItMustBe) {
 
 TEST(ViewFile, SaysWhichFileCannotBeUsed) {
   const fs::path folder = fs::temp_directory_path();
-  EXPECT_NE(fault_of([&] { read_view(folder / "supple-no-view.json"); }).find("cannot be read"), std::string::npos);
+  EXPECT_NE(fault_of([&] { read_view(folder / "supple-no-view.json"); }).find("cannot be read"),
+            std::string::npos);
   EXPECT_NE(fault_of([&] { read_view(folder); }).find("it is a folder"), std::string::npos);
   const fs::path file = folder / "supple-large-view.json";
   std::ofstream(file) << std::string(largest_view + 1, ' ');
@@ -74,10 +78,12 @@ TEST(ViewFile, SaysWhichFileCannotBeUsed) {
 }
 
 TEST(ViewFile, AnElementOfThePageCannotBeEndedByAText) {
-  const std::string page = page_with_json("<body><!--supple-cargo--></body>", "supple-view", R"({"a": "</script>"})");
-  EXPECT_EQ(page,
-            "<body><script type=\"application/json\" id=\"supple-view\">{\"a\": \"\\u003c/script>\"}</script>\n"
-            "<!--supple-cargo--></body>");
+  const std::string page =
+      page_with_json("<body><!--supple-cargo--></body>", "supple-view", R"({"a": "</script>"})");
+  EXPECT_EQ(
+      page,
+      "<body><script type=\"application/json\" id=\"supple-view\">{\"a\": \"\\u003c/script>\"}</script>\n"
+      "<!--supple-cargo--></body>");
   EXPECT_THROW(page_with_json("<body></body>", "a", "{}"), Error);
 }
 

@@ -29,8 +29,8 @@ export class Views {
   constructor(private readonly model: Model, private readonly client: Client, private readonly page: Page) {
     const button = (label: string, title: string, press: () => void) => h("button", { type: "button", class: "link", title, onclick: press }, label);
     this.element = h(
-      "section", { "aria-label": "View file" }, h("h2", {}, "View"),
-      h("div", { class: "options", role: "group", "aria-label": "View file" },
+      "section", { "aria-label": "View file" }, h("h2", {}, "View file"),
+      h("div", { class: "links", role: "group", "aria-label": "View file" },
         button("Save view", "Saves camera, layers and colours as a file, for this page and for supple render", () => this.save()),
         button("Load view…", "Or drop a view file on the page", () => this.file.click()),
         button("Copy link", "Copies an address that opens this view at this moment", () => void this.copyLink())),
