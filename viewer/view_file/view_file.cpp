@@ -1,4 +1,4 @@
-#include "view_file/view_file.hpp"
+#include "view_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "export/page_file.hpp"
 #include "session/messages/json_value.hpp"
 #include "supple/error.hpp"
-#include "view_file/view_members.hpp"
+#include "view_members.hpp"
 
 namespace supple::viewer {
 namespace {

@@ -25,8 +25,9 @@ import { hasCargo, openWorker } from "./transport/worker";
 import { AXIS_VIEWS, type AxisView } from "./view/camera";
 import { SceneView } from "./view/scene_view";
 import { applyCamera, MOST_STORED, showView, viewOf, type ViewState } from "./view_state";
-import { parseView, viewOfHash } from "./views/view_file";
-import { embeddedView, Views } from "./views/views";
+import { firstView } from "./views/first_view";
+import { viewOfHash } from "./views/view_file";
+import { Views } from "./views/views";
 
 const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
   select: ["Select", "V"],
@@ -270,29 +271,14 @@ export class App {
   }
 
   private restoreView(): void {
-    // A reload shows what was there. Otherwise a link comes first, then the view of the program.
-    const [navigation] = performance.getEntriesByType("navigation") as PerformanceNavigationTiming[];
-    const isReload = navigation?.type === "reload";
-    const stored = this.readView(() => parseView(localStore(VIEW + this.model.scene!.title) ?? ""), false);
-    const given = this.linked ?? this.readView(embeddedView, true);
+    const { view, step, withCamera } = firstView(localStore(VIEW + this.model.scene!.title), this.linked, (text) => this.notices.show(text));
     this.hasRestored = true;
-    this.moment = isReload ? undefined : given?.step;
+    this.moment = step;
     // The first frame shall be that of the view: the session has played no step before it has credit.
-    if (this.moment !== undefined || this.job) this.client.send({ do: "pause" });
-    const view = isReload ? stored ?? given : given ?? stored;
-    // The first camera fits the shape of the picture.
-    if (this.job) this.readView(() => (this.view.setPicture(this.job!), null), false);
-    // The camera in an address is newer than a view, unless a reloaded address is older than what was stored.
-    if (view) this.applyView(view, this.linked !== null || isReload || !location.hash.includes("camera="));
-  }
-
-  private readView(read: () => Partial<ViewState> | null, saysWhy: boolean): Partial<ViewState> | null {
-    try {
-      return read();
-    } catch (error) {
-      if (saysWhy) this.notices.show((error as Error).message);
-      return null;
-    }
+    if (step !== undefined || this.job) this.client.send({ do: "pause" });
+    // The first camera fits the shape of the picture. A size that is too large is an error of the job.
+    if (this.job && Math.max(this.job.width, this.job.height) <= this.view.largestSide) this.view.setPicture(this.job);
+    if (view) this.applyView(view, withCamera);
   }
 
   private applyView(view: Partial<ViewState>, withCamera = true): void {

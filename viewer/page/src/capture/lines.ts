@@ -56,7 +56,7 @@ function normalOf(positions: ArrayLike<number>, corners: Uint32Array, triangle: 
 const areaOf = (at: Projected, a: number, b: number, c: number): number =>
   (at[3 * b]! - at[3 * a]!) * (at[3 * c + 1]! - at[3 * a + 1]!) - (at[3 * b + 1]! - at[3 * a + 1]!) * (at[3 * c]! - at[3 * a]!);
 
-/** Of all edges those that an outline has: borders, creases, and edges between a front and a back side. */
+/** The edges that an outline has: borders, creases, and edges between a front and a back side. */
 export function outlineOf(edges: Int32Array, positions: ArrayLike<number>, corners: Uint32Array, at: Projected): Int32Array {
   const least = Math.cos((CREASE_DEGREES * Math.PI) / 180);
   const side = (triangle: number) => Math.sign(areaOf(at, corners[3 * triangle]!, corners[3 * triangle + 1]!, corners[3 * triangle + 2]!));

@@ -3,16 +3,10 @@ import type { Client } from "../client";
 import type { Model } from "../model";
 import { download, h, readable, sheet, stamp } from "../panels/dom";
 import type { ViewState } from "../view_state";
-import { hashOfView, parseView, readViewFile } from "./view_file";
+import { hashOfView, readViewFile } from "./view_file";
 
 /** A link does not take more steps of a simulation than these. */
 const MOST_STEPS = 100_000;
-
-/** The view that the program was started with, or that was exported with the page; null when there is none. */
-export function embeddedView(): Partial<ViewState> | null {
-  const text = document.getElementById("supple-view")?.textContent;
-  return text ? parseView(text) : null;
-}
 
 interface Page {
   view(): ViewState;
