@@ -225,6 +225,21 @@ async function figureInMillimetres(stage) {
   await page.getByRole("log").getByText("An SVG cannot show a slice.").waitFor();
 }
 
+async function plotAsSvg(stage) {
+  const { page } = await stage.view(nine);
+  await page.getByRole("tab", { name: "Plots" }).click();
+  await until(page, () => supple.model.history.frames.length > 20);
+  await pause(page);
+  const svg = readFileSync(await downloaded(stage, page, () => page.getByRole("button", { name: "Save Contacts and candidates as SVG" }).click()), "utf8");
+  const seen = await page.evaluate((svg) => {
+    const root = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;
+    const lines = [...root.querySelectorAll("path[stroke-linejoin]")].map((line) => line.getAttribute("d").split(/[ML]/).length - 1);
+    return { lines, texts: [...root.querySelectorAll("text")].map((text) => text.textContent), rows: supple.model.history.frames.length };
+  }, svg);
+  assert.deepEqual(seen.lines, [seen.rows, seen.rows]);
+  for (const text of ["Contacts and candidates", "contacts", "candidate pairs", "step"]) assert.ok(seen.texts.includes(text), text);
+}
+
 /** What `supple render` draws of a saved view is what the page draws. */
 async function renderDrawsTheView(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
@@ -262,5 +277,6 @@ export const tests = [
   ["a link to a frame of a recording", linkToAFrame],
   ["a link to a step of a simulation", linkToAStep],
   ["a figure in millimetres, as PNG and as SVG", figureInMillimetres],
+  ["a plot as SVG", plotAsSvg],
   ["render draws the view that the page saved", renderDrawsTheView],
 ];
