@@ -151,7 +151,7 @@ class Run {
     if (word == "end") has_ended_ = true;
     if (word == "failure") {
       const viewer::JsonValue* const message = result.head.find("message");
-      fault_ = message ? message->text : "";
+      fault_ = message && !message->text.empty() ? message->text : "the page has failed";
     }
   }
 
