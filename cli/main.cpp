@@ -12,6 +12,7 @@
 #include "options/options.hpp"
 #include "query/ccd_queries.hpp"
 #include "query/query.hpp"
+#include "render/render.hpp"
 #include "supple/error.hpp"
 
 namespace supple::cli {
@@ -26,6 +27,8 @@ int run(const CommandLine& line) {
       return run_simulate(line.simulate, one);
     case CommandLine::Command::view:
       return run_view(line.view);
+    case CommandLine::Command::render:
+      return run_render(line.render);
     case CommandLine::Command::info:
       return run_info(line.info);
     case CommandLine::Command::query:

@@ -29,11 +29,11 @@ LONGER_CHAINS = {"octree": 6, "answers": 6, "simulation/src": 7, "viewer/session
 MOST_FILES = 20
 # Libraries around the core, each with the last layer whose internal headers it may include; recording: none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None, "distributed": "scene"}
-PROGRAMS = ["viewer/session", "viewer/export", "viewer/server", "viewer/attach", "cli", "experiments", "examples", "benchmarks"]
+PROGRAMS = ["viewer/session", "viewer/export", "viewer/view_file", "viewer/server", "viewer/attach", "cli", "experiments", "examples", "benchmarks"]
 # Folders of small programs that do not depend on each other.
 LISTS = ["examples"]
 # Folders of the viewer that others may include although they are not public: "session/scene_view.hpp".
-SHARED = {"viewer/server": ["session"], "viewer/attach": ["session", "export", "server"], "cli": ["session", "export", "server"], "experiments": ["session"]}
+SHARED = {"viewer/server": ["session"], "viewer/view_file": ["session", "export"], "viewer/attach": ["session", "export", "server"], "cli": ["session", "export", "view_file", "server"], "experiments": ["session"]}
 # Programs that are built on the parts of another one; a benchmark divides space as a distributed scene does.
 BUILT_ON = {"experiments": "cli", "benchmarks": "distributed/src"}
 PUBLIC = ["include", "viewer/include"] + [f"{name}/include" for name in COMPONENTS]

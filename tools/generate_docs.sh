@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Writes docs/supple.1, docs/cli.md, the tables of options, records and statistics in other documents (between
-# lines `<!-- begin NAME -->` and `<!-- end NAME -->`), and the sections of the viewer's messages for the page,
-# from the program's own definitions.
+# lines `<!-- begin NAME -->` and `<!-- end NAME -->`), and for the page the sections of the viewer's messages and
+# the members of view files, from the program's own definitions.
 #
 # usage: generate_docs.sh [--check] PROGRAM
 #
@@ -37,9 +37,10 @@ for document in $(grep -l '^<!-- begin ' "$docs"/*.md | xargs -r -n1 basename); 
 done
 rm "$fresh/tables"
 "$program" --generate sections >"$fresh/sections.ts"
+"$program" --generate view-members >"$fresh/view_members.ts"
 for document in $(ls "$fresh"); do
   place=docs/$document
-  [ "$document" != sections.ts ] || place=viewer/page/src/protocol/sections.ts
+  case $document in *.ts) place=viewer/page/src/protocol/$document ;; esac
   if ! $check; then
     cp "$fresh/$document" "$root/$place"
   elif ! diff -u "$root/$place" "$fresh/$document" >&2; then

@@ -10,9 +10,11 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <variant>
 
 #include "base/progress.hpp"
 #include "base/text.hpp"
+#include "export/embedded.hpp"
 #include "inputs/frame_files.hpp"
 #include "session/messages/statistics.hpp"
 #include "supple/error.hpp"
@@ -202,12 +204,46 @@ viewer::ViewedObject object_of(const InputObject& object) {
   return shown;
 }
 
+/// Whether a mesh of the command line plays an animation.
+bool moves_by_itself(const Input& input) {
+  return input.scene_text.empty() && input.frames &&
+         std::any_of(input.objects.begin(), input.objects.end(), [](const InputObject& object) {
+           return object.motion && std::holds_alternative<ComputedMotion>(*object.motion);
+         });
+}
+
 std::string title_of(const std::vector<std::string>& inputs) {
   const std::string first = valid_utf8(std::filesystem::path(inputs.front()).filename().string());
   return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
 }
 
 }  // namespace
+
+void check_viewer() {
+  if (viewer::embedded_page().empty())
+    throw Error(
+        "this supple was built without the viewer; run make program, or configure the build with "
+        "-DSUPPLE_BUILD_VIEWER=ON, which needs npm and clang-19's WebAssembly (tools/install_dependencies.sh "
+        "installs them on Debian 12)");
+}
+
+Input read_view_input(const ViewOptions& options) {
+  const bool is_scene = is_scene_file(options.inputs.front());
+  if (options.seed && !is_scene) throw Error("--seed: only a scene file uses random numbers; leave it out");
+  if (options.time_step && !is_scene && !options.sequence)
+    throw Error("--time-step: only a scene file or --sequence has time steps; leave it out");
+  if (!options.sequence) {
+    Input input = read_objects(options.inputs, {options.seed, options.time_step}, options.reading);
+    if (options.reading.clips.frames && !moves_by_itself(input))
+      throw Error("--frames: only the animation of a mesh file has a choice of frames; leave it out");
+    return input;
+  }
+  Input input = read_sequence(options.inputs, options.reading.conversion);
+  // Mesh files contain no times, so play 25 frames per second.
+  constexpr double film_seconds = 0.04;
+  input.simulation.time_step = options.time_step.value_or(film_seconds);
+  return input;
+}
 
 viewer::SceneView build_scene_view(const Input& input, const ViewOptions& options) {
   viewer::SceneView show;

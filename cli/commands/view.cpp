@@ -2,12 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "base/exit_status.hpp"
@@ -27,43 +26,10 @@
 #include "session/packed/packed_scene.hpp"
 #include "session/session.hpp"
 #include "supple/error.hpp"
+#include "view_file/view_file.hpp"
 
 namespace supple::cli {
 namespace {
-
-void check_build() {
-  if (viewer::embedded_page().empty())
-    throw Error(
-        "this supple was built without the viewer; run make program, or configure the build with "
-        "-DSUPPLE_BUILD_VIEWER=ON, which needs npm and clang-19's WebAssembly (tools/install_dependencies.sh "
-        "installs them on Debian 12)");
-}
-
-/// Whether a mesh of the command line plays an animation.
-bool moves_by_itself(const Input& input) {
-  return input.scene_text.empty() && input.frames &&
-         std::any_of(input.objects.begin(), input.objects.end(), [](const InputObject& object) {
-           return object.motion && std::holds_alternative<ComputedMotion>(*object.motion);
-         });
-}
-
-Input read_input(const ViewOptions& options) {
-  const bool is_scene = is_scene_file(options.inputs.front());
-  if (options.seed && !is_scene) throw Error("--seed: only a scene file uses random numbers; leave it out");
-  if (options.time_step && !is_scene && !options.sequence)
-    throw Error("--time-step: only a scene file or --sequence has time steps; leave it out");
-  if (!options.sequence) {
-    Input input = read_objects(options.inputs, {options.seed, options.time_step}, options.reading);
-    if (options.reading.clips.frames && !moves_by_itself(input))
-      throw Error("--frames: only the animation of a mesh file has a choice of frames; leave it out");
-    return input;
-  }
-  Input input = read_sequence(options.inputs, options.reading.conversion);
-  // Mesh files contain no times, so play 25 frames per second.
-  constexpr double film_seconds = 0.04;
-  input.simulation.time_step = options.time_step.value_or(film_seconds);
-  return input;
-}
 
 /// The size in bytes of the frames in a page before compression: positions as floats.
 double size_of_frames(const viewer::SceneView& show) {
@@ -84,14 +50,13 @@ void check_page_size(const std::string& file, double bytes, double most) {
                   viewer::largest_page / 1'000'000));
 }
 
-int write_page(const viewer::SceneView& show, const ViewOptions& options) {
+int write_page(const viewer::SceneView& show, const ViewOptions& options, std::string_view template_page) {
   // Positions do not compress by a larger factor.
   constexpr double most_compression = 10;
   const auto most = static_cast<double>(viewer::largest_page);
   check_page_size(options.page_file, size_of_frames(show), most_compression * most);
   const std::vector<std::byte> packed = viewer::pack(show);
-  const std::string page =
-      viewer::page_with_cargo(viewer::embedded_page(), packed, viewer::embedded_module());
+  const std::string page = viewer::page_with_cargo(template_page, packed, viewer::embedded_module());
   check_page_size(options.page_file, static_cast<double>(page.size()), most);
   viewer::replace_file(options.page_file, page);
   fmt::print("{}: {:.2f} MB, {}{}\n", one_line(options.page_file), static_cast<double>(page.size()) / 1e6,
@@ -108,12 +73,12 @@ void warn_of_others(const ViewOptions& options) {
              one_line(options.address));
 }
 
-int serve(viewer::SceneView show, const ViewOptions& options) {
+int serve(viewer::SceneView show, const ViewOptions& options, std::string_view page) {
   viewer::Server server(
       viewer::Session(std::move(show), options.budget),
       {.address = options.address,
        .port = options.port,
-       .page = viewer::embedded_page(),
+       .page = page,
        .token = options.token_file.empty() ? "" : viewer::token_of_file(options.token_file)});
   warn_of_others(options);
   const Interruption interruption;
@@ -131,17 +96,21 @@ int serve(viewer::SceneView show, const ViewOptions& options) {
 }  // namespace
 
 int run_view(const ViewOptions& options) {
-  check_build();
-  Input input = read_input(options);
+  check_viewer();
+  const std::string view = options.view_file.empty() ? "" : viewer::read_view(options.view_file);
+  Input input = read_view_input(options);
   print_notes(input);
-  check_output_names({{"--export", options.page_file}}, input.files);
+  const std::string page = view.empty()
+                               ? std::string(viewer::embedded_page())
+                               : viewer::page_with_json(viewer::embedded_page(), "supple-view", view);
+  check_output_names({{"--export", options.page_file}, {"--view", options.view_file}}, input.files);
   apply(options, input);
   viewer::SceneView show = build_scene_view(input, options);
   for (const std::string& warning : viewer::warnings_of_meshes(show))
     fmt::print(stderr, "supple: warning: {}\n", one_line(warning));
-  if (!options.page_file.empty()) return write_page(show, options);
+  if (!options.page_file.empty()) return write_page(show, options, page);
   warn_of_missing_threads(options.scene.threads);
-  return serve(std::move(show), options);
+  return serve(std::move(show), options, page);
 }
 
 }  // namespace supple::cli

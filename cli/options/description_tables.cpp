@@ -20,6 +20,7 @@
 #include "supple/format_descriptions.hpp"
 #include "supple/result_lists.hpp"
 #include "supple/simulation_descriptions.hpp"
+#include "view_file/view_members.hpp"
 
 namespace supple::cli {
 namespace {
@@ -273,6 +274,16 @@ void record_table(const char* name) {
   });
 }
 
+constexpr const char* kinds_of_view_values[] = {"number", "whole", "truth", "word",
+                                                "colour", "text",  "point", "objects"};
+
+void view_table() {
+  table("view_members", "| Member | Value | Meaning |", [] {
+    for (const viewer::ViewMember& member : viewer::view_members)
+      fmt::print("| `{}` | {} | {} |\n", member.path, viewer::text_of(member), member.doc);
+  });
+}
+
 void csv_table() {
   table("json_csv", "| Contacts | Columns | With `--contact-details` also |", [] {
     for (std::size_t i = 1; i < set_words<ContactKinds>.size(); ++i) {
@@ -309,11 +320,40 @@ void print_sections() {
   fmt::print("}} as const satisfies Record<number, Form>;\n");
 }
 
+void print_view_members() {
+  fmt::print(
+      "// `make docs` writes this file from viewer/view_file/view_members.hpp.\n\n"
+      "export interface ViewMember {{\n  path: string;\n"
+      "  kind: \"number\" | \"whole\" | \"truth\" | \"word\" | \"colour\" | \"text\" | \"point\" | "
+      "\"objects\";\n"
+      "  /** What a value must be, in words. */\n  range: string;\n"
+      "  /** Of numbers; `above` excludes the lowest number. */\n  low: number;\n  high: number;\n  above: "
+      "boolean;\n"
+      "  words: readonly string[];\n}}\n\nexport const VIEW_MEMBERS: readonly ViewMember[] = [\n");
+  const auto number = [](double x) {
+    return std::isfinite(x) ? fmt::format("{}", x) : x < 0 ? "-Infinity" : "Infinity";
+  };
+  // `"off", "x"` of `off x`.
+  const auto quoted = [](std::string_view words) {
+    std::string list;
+    for (const char c : words) list += c == ' ' ? std::string("\", \"") : std::string(1, c);
+    return list.empty() ? list : fmt::format("\"{}\"", list);
+  };
+  for (const viewer::ViewMember& member : viewer::view_members)
+    fmt::print(
+        "  {{ path: \"{}\", kind: \"{}\", range: \"{}\", low: {}, high: {}, above: {}, words: [{}] }},\n",
+        member.path, kinds_of_view_values[static_cast<std::size_t>(member.kind)], viewer::text_of(member),
+        number(member.range.lowest), number(member.range.highest), member.range.excludes_lowest,
+        quoted(member.words));
+  fmt::print("];\n");
+}
+
 void print_description_tables() {
   attribute_table<SceneOptions>("recording_scene_options");
   attribute_table<ObjectOptions>("recording_object_options");
   lists_table();
   sections_table();
+  view_table();
   statistics_tables();
   record_table<Manifold, ManifoldPoint>("json_manifolds");
   csv_table();

@@ -8,5 +8,7 @@ namespace supple::cli {
 void print_description_tables();
 /// Prints the sections of the viewer's messages as a module of TypeScript, for the reader of the page.
 void print_sections();
+/// Prints the members of a view file as a module of TypeScript, for the page.
+void print_view_members();
 
 }  // namespace supple::cli

@@ -214,8 +214,9 @@ void print_document(const CLI::App& program, const std::string& name) {
   if (name == "man") return print_man(program);
   if (name == "tables") return print_description_tables();
   if (name == "sections") return print_sections();
-  throw CLI::ValidationError("--generate",
-                             fmt::format("'{}' is not one of man, markdown, sections, tables", name));
+  if (name == "view-members") return print_view_members();
+  throw CLI::ValidationError(
+      "--generate", fmt::format("'{}' is not one of man, markdown, sections, tables, view-members", name));
 }
 
 }  // namespace supple::cli

@@ -12,6 +12,7 @@ inline constexpr const char* program_footer = R"(Examples:
   supple simulate scene.toml --frames 300 --record run.h5
                                             simulate moving objects and record their contacts
   supple view run.h5                        view a scene or a recording in a browser
+  supple render run.h5 -o figure.png        draw frames as pictures, without a window
   supple info rabbit.obj                    counts, bounds, holes, octree statistics
   supple query closest points.txt body.obj  nearest triangles of points; also inside, rays, distance
   supple ccd-queries edge-edge/*.csv        continuous queries, compared with published answers
@@ -23,7 +24,8 @@ recordings differ (diff). 2 means a usage or input error, which is reported in o
 up (simulate), or that nothing touches but something was not tested (--fail-on-contact): an object alone,
 nothing that moves, or a run that --time-limit ended. 3 means that brute force gives a different result
 (--verify) or that an answer is false (ccd-queries). 130 and 143 mean that detect, query or simulate was
-interrupted; its files are whole, have what was found, and say that they are truncated. view exits with 0
+interrupted; its files are whole, have what was found, and say that they are truncated. They also mean that
+render was interrupted: it keeps the pictures that it has written. view exits with 0
 when it is interrupted.)";
 
 inline constexpr const char* detect_footer = R"(Examples:
@@ -112,6 +114,19 @@ The address contains a new token in each run, so that nobody else can open the p
 token. The program opens a temporary file in the browser, which leads to the address. Only you can read that
 file. A browser from a Snap or a Flatpak may not see it: open the printed address instead. Ctrl-C ends the
 program, and the page says that it has ended.)";
+
+inline constexpr const char* render_footer = R"(Examples:
+  supple render run.h5 --view view.json -o figure.png
+      One picture of a recording, as the page showed it when Save view wrote view.json.
+  supple render scenes/nine.toml --frames 0-300:3 -o film/%04d.png
+      Every third step of a simulation, for a film.
+  supple render rabbit.obj fish.ply --size 80x60mm --dpi 600 --legend --scale-bar -o figure.png
+      A figure for a paper, as large as in print.
+  supple render rabbit.obj fish.ply --view view.json -o figure.svg
+      The lines of the view as SVG: outlines, wireframes, contact segments and points.
+
+A Chromium draws the pictures as it draws the page, so they look the same. It needs no window and no graphics
+card. Ctrl-C ends the program and its browser; files that are written are whole.)";
 
 inline constexpr const char* info_footer = R"(Examples:
   supple info rabbit.obj

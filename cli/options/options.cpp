@@ -23,6 +23,7 @@
 #include "options/option_groups.hpp"
 #include "options/option_kinds.hpp"
 #include "options/option_needs.hpp"
+#include "options/view_commands.hpp"
 #include "scene_file/scene_file.hpp"
 #include "session/settings.hpp"
 #include "supple/format_descriptions.hpp"
@@ -82,20 +83,6 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
   return app;
 }
 
-/// Adds options that replace values of the scene file.
-void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
-                         std::optional<double>& time_step) {
-  for_each_field<SimulationOptions>([&]<class Value>(const Field<SimulationOptions, Value>& field) {
-    const auto add = [&](auto& given) {
-      add_field(app, field, Value{}, [&given](const Value& value) { given = value; })
-          ->group("Simulation")
-          ->description(std::string(field.doc) + "; replaces the value of the scene file");
-    };
-    if constexpr (std::is_same_v<Value, double>) add(time_step);
-    if constexpr (std::is_same_v<Value, std::uint64_t>) add(seed);
-  });
-}
-
 void add_simulation_options(CLI::App& app, SimulateOptions& options) {
   app.add_option("SCENE.toml", options.input, "A scene file")->required()->type_name("");
   const auto group = [](CLI::Option* option) { return option->group("Simulation"); };
@@ -124,72 +111,6 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
       ->type_name("FILE.h5")
       ->group("Output");
   add_output_options(*app, options, dependences);
-  return app;
-}
-
-CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& dependences) {
-  CLI::App* app = program.add_subcommand("view",
-                                         "Show moving objects in a browser with their contacts and the "
-                                         "stages that find them; objects can be pulled");
-  app->footer(view_footer);
-  add_input_options(*app, options.inputs, options.sequence, options.reading);
-  add_frames(*app, options.reading.clips.frames, "Number of frames of the animation of a file")
-      ->group("Input");
-  add_scene_overrides(*app, options.seed, options.time_step);
-  add_detection_options(*app, options, dependences, true);
-  add_fused_refit(*app, options, dependences);
-
-  const auto group = [](CLI::Option* option) { return option->group("Page"); };
-  const auto is_served = [&] { return options.page_file.empty(); };
-  const char* const no_export = "a page that is served, not written by --export";
-  dependences.push_back({group(add_whole(
-                             *app, "--port", ValueRange::from(0, 65535),
-                             [&](std::uint64_t port) { options.port = static_cast<std::uint16_t>(port); },
-                             "Port of the server; 0 means any free port (default: 0)")),
-                         is_served, no_export});
-  dependences.push_back(
-      {group(app->add_option(
-                    "--host", options.address,
-                    "IP address of the server. With an address other than 127.0.0.1, people on other "
-                    "machines who know the full address can see and control the page (default: 127.0.0.1)")
-                 ->type_name("ADDRESS")),
-       is_served, no_export});
-  dependences.push_back(
-      {group(app->add_option(
-                    "--token-file", options.token_file,
-                    "File with the secret part of the address, made when it does not exist: with --port, the "
-                    "address stays the same, and an open page connects again after a restart (default: a "
-                    "new secret in each run)")
-                 ->type_name("FILE")),
-       is_served, no_export});
-  dependences.push_back({group(app->add_flag_callback(
-                             "--no-open", [&] { options.open_browser = false; },
-                             "Print the address without opening a browser")),
-                         is_served, no_export});
-  dependences.push_back(
-      {group(add_whole(
-           *app, "--max-memory", ValueRange::from(0, 1'000'000'000),
-           [&](std::uint64_t megabytes) { options.budget.bytes = 1e6 * static_cast<double>(megabytes); },
-           "Memory in MB that commands of the page may add to that of the scene as opened, as estimated "
-           "for its objects, vertices and triangles (default: 2000)")),
-       is_served, no_export});
-  dependences.push_back(
-      {group(add_whole(
-           *app, "--history", ValueRange::from(0, 1'000'000'000),
-           [&](std::uint64_t megabytes) {
-             options.budget.history_bytes = 1e6 * static_cast<double>(megabytes);
-           },
-           "Memory in MB for the positions of the last steps of a simulation, which the page can "
-           "go back to; 0 keeps none (default: 500)")),
-       is_served, no_export});
-  dependences.push_back({group(app->add_flag("--follow", options.follow,
-                                             "Show the frames of a recording that is still being written as "
-                                             "they are saved")),
-                         is_served, no_export});
-  group(app->add_option("--export", options.page_file,
-                        "Write one HTML file instead of starting a server: any browser can show it, and the "
-                        "detection runs in the page")
-            ->type_name("PAGE.html"));
   return app;
 }
 
@@ -418,6 +339,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments,
   const CLI::App* detect = add_detect(program, result.detect, dependences);
   const CLI::App* simulate = add_simulate(program, result.simulate, dependences);
   const CLI::App* view = add_view(program, result.view, dependences);
+  const CLI::App* render = add_render(program, result.render, dependences);
   const CLI::App* info = add_info(program, result.info, dependences);
   const CLI::App* query = add_query(program, result.query, dependences);
   const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
@@ -435,6 +357,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments,
     resolve(result.detect, result.detect.inputs);
     resolve(result.simulate, {result.simulate.input});
     resolve(result.view, result.view.inputs);
+    resolve(result.render, result.render.inputs);
     if (query->parsed()) sort_arguments(result.query);
     check(dependences);
     check_outputs(result.detect, false);
@@ -442,6 +365,7 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments,
     result.command = detect->parsed()        ? CommandLine::Command::detect
                      : simulate->parsed()    ? CommandLine::Command::simulate
                      : view->parsed()        ? CommandLine::Command::view
+                     : render->parsed()      ? CommandLine::Command::render
                      : info->parsed()        ? CommandLine::Command::info
                      : query->parsed()       ? CommandLine::Command::query
                      : ccd_queries->parsed() ? CommandLine::Command::ccd_queries

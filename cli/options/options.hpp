@@ -92,6 +92,36 @@ struct ViewOptions : MethodOptions {
   viewer::MemoryBudget budget;
   bool follow = false;    ///< a recording that is still being written
   std::string page_file;  ///< file to write instead of serving; empty: serve
+  std::string view_file;  ///< camera, layers and colours; empty: those of the page
+};
+
+/// The largest width and height of a picture.
+inline constexpr std::uint32_t most_pixels = 16384;
+
+/// Frames from the first to the last, every n-th.
+struct FrameRange {
+  std::uint64_t first = 0, last = 0, every = 1;
+
+  std::uint64_t count() const { return (last - first) / every + 1; }
+};
+
+/// Options of `supple render`.
+struct RenderOptions : ViewOptions {
+  struct Size {
+    double width = 1600, height = 1200;
+    bool is_in_millimetres = false;  ///< otherwise in pixels
+  };
+
+  std::string output;                  ///< a file, or a pattern of files with the number of the frame
+  bool is_svg = false;                 ///< otherwise PNG
+  std::optional<FrameRange> frames{};  ///< nothing: the frame of the view file, or 0
+  Size size;
+  double dpi = 200;
+  std::string background = "white", theme = "light";
+  bool legend = false, scale_bar = false;
+  std::string browser;  ///< path of a Chromium; empty: `find_browser` looks for one
+  bool uses_graphics_card = false;
+  bool quiet = false;
 };
 
 /// Options of `supple info`.
@@ -144,12 +174,13 @@ struct DiffOptions {
 };
 
 struct CommandLine {
-  enum class Command { detect, simulate, view, info, query, ccd_queries, diff, experiment, exit };
+  enum class Command { detect, simulate, view, render, info, query, ccd_queries, diff, experiment, exit };
   Command command = Command::exit;
   int exit_status = 0;  ///< of `Command::exit`: help, version or a usage error, already printed
   DetectOptions detect;
   SimulateOptions simulate;
   ViewOptions view;
+  RenderOptions render;
   InfoOptions info;
   QueryOptions query;
   CcdQueriesOptions ccd_queries;

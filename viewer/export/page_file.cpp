@@ -15,6 +15,7 @@
 namespace supple::viewer {
 namespace {
 
+constexpr std::string_view cargo_comment = "<!--supple-cargo-->";
 /// zlib counts in 32 bits, so large inputs are compressed in parts.
 constexpr std::size_t largest_part = std::size_t{1} << 30;
 
@@ -115,15 +116,19 @@ class TemporaryFile {
 
 }  // namespace
 
+std::size_t place_of_cargo(std::string_view page) {
+  const std::size_t at = page.rfind(cargo_comment);
+  if (at == std::string_view::npos) throw Error("the page of this build has no place for a scene");
+  return at;
+}
+
 std::string page_with_cargo(std::string_view page, std::span<const std::byte> scene,
                             std::span<const std::byte> module) {
-  constexpr std::string_view place = "<!--supple-cargo-->";
-  const std::size_t at = page.rfind(place);
-  if (at == std::string_view::npos) throw Error("the page of this build has no place for a scene");
+  const std::size_t at = place_of_cargo(page);
   std::string whole(page.substr(0, at));
   append_element(whole, "supple-wasm", module);
   append_element(whole, "supple-scene", scene);
-  whole += page.substr(at + place.size());
+  whole += page.substr(at + cargo_comment.size());
   return whole;
 }
 

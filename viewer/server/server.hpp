@@ -1,15 +1,26 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "session/session.hpp"
 
 namespace supple::viewer {
+
+/// The callbacks of a program whose page draws pictures for it. The thread of `Server::run` calls them; what
+/// they throw leaves `run`. Without them, a page that sends a binary message is disconnected.
+struct Drawing {
+  /// A binary message of the page, of at most 1 GiB.
+  std::function<void(std::span<const std::byte>)> result{};
+  /// The page is not connected any more.
+  std::function<void()> left{};
+};
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< an IP address; see `is_loopback`
@@ -18,6 +29,7 @@ struct ServerOptions {
   /// A page that is silent for this long is disconnected. It gets a ping before that.
   std::chrono::milliseconds patience{30'000};
   std::string token{};  ///< empty: a new random token; see `token_of_file`
+  Drawing drawing{};
 };
 
 /// Whether only programs on this machine can reach the address. Throws `Error` for an invalid IP address.

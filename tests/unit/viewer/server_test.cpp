@@ -12,6 +12,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -54,14 +55,15 @@ class ViewerServer : public testing::Test {
     alarm(0);
   }
 
-  void start(SceneView show = small_show(), std::chrono::milliseconds patience = 30s) {
-    server_.emplace(Session(std::move(show)), ServerOptions{"127.0.0.1", 0, page, patience});
+  void start(SceneView show = small_show(), std::chrono::milliseconds patience = 30s, Drawing drawing = {}) {
+    server_.emplace(Session(std::move(show)), ServerOptions{"127.0.0.1", 0, page, patience, "", drawing});
     thread_ = std::thread([this] {
       try {
         server_->run([this] { return should_end_.load(); });
       } catch (const std::exception& error) {
         failure_ = error.what();
       }
+      has_ended_ = true;
     });
   }
   void end() {
@@ -76,6 +78,7 @@ class ViewerServer : public testing::Test {
   std::string own_host() const { return "127.0.0.1:" + std::to_string(port()); }
 
   std::string failure_;
+  std::atomic<bool> has_ended_ = false;
 
  private:
   std::optional<Server> server_;
@@ -292,6 +295,47 @@ TEST_F(ViewerServer, OnlyTextsUpToAMegabyteAreCommands) {
   for (int i = 0; i < 3000 && !error; ++i)
     in_pieces.socket().write_some(false, boost::asio::buffer(std::string(1000, ' ')), error);
   EXPECT_EQ(in_pieces.receive_close(), 4003);
+}
+
+TEST_F(ViewerServer, APageThatDrawsSendsResultsAndIsMissed) {
+  std::vector<std::size_t> sizes;
+  std::size_t last = 0;
+  std::atomic<bool> has_left = false;
+  start(small_show(), 30s,
+        {[&](std::span<const std::byte> result) {
+           sizes.push_back(result.size());
+           last = static_cast<std::size_t>(result.back());
+         },
+         [&] { has_left = true; }});
+  {
+    PageClient client = connect();
+    client.receive(Kind::scene);
+    // Larger than any command, between two commands.
+    client.send(R"({"do": "pause", "id": 1})");
+    client.socket().binary(true);
+    client.send(std::string(std::size_t{20} << 20, '\7'));
+    client.send("\5");
+    client.socket().text(true);
+    client.send(R"({"do": "pause", "id": 2})");
+    EXPECT_EQ(client.receive(Kind::answer).json["id"], 1);
+    EXPECT_EQ(client.receive(Kind::answer).json["id"], 2);
+    EXPECT_FALSE(has_left);
+  }
+  EXPECT_TRUE(eventually([&] { return has_left.load(); }));
+  end();
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{std::size_t{20} << 20, 1}));
+  EXPECT_EQ(last, 5u);
+}
+
+TEST_F(ViewerServer, WhatTheProgramThrowsForAResultEndsTheServer) {
+  start(small_show(), 30s,
+        {[](std::span<const std::byte>) { throw std::runtime_error("the disk is full"); }, [] {}});
+  PageClient client = connect();
+  client.socket().binary(true);
+  client.send("x");
+  EXPECT_TRUE(eventually([&] { return has_ended_.load(); }));
+  end();
+  EXPECT_EQ(failure_, "the disk is full");
 }
 
 TEST_F(ViewerServer, MoreCommandsThanMayWaitAreAllCarriedOut) {

@@ -164,7 +164,7 @@ async function onePictureWithoutGround(stage) {
   assert.ok(Math.abs(width - 2 * window.width) <= 2 && Math.abs(height - 2 * window.height) <= 2, `${width} × ${height}`);
 
   await openDialog(page);
-  await dialog.getByRole("checkbox", { name: "Transparent ground" }).check();
+  await dialog.getByRole("combobox", { name: "Background" }).selectOption("Transparent");
   const clear = await save(stage, page);
   const ball = await page.evaluate(() => supple.project([-0.6, 0, 0]));
   const view = await page.locator("canvas.view").boundingBox();
@@ -264,11 +264,12 @@ async function keysAlone(stage) {
   const focused = () => page.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.labels?.[0]?.textContent ?? document.activeElement.textContent);
   assert.equal(await focused(), "Size");
   const seen = [];
-  for (let i = 0; i < 4; ++i) {
+  const names = ["Pixels per inch", "Pictures", "Every n-th step", "Background", "Legend with the names of objects", "Scale bar", "Save"];
+  for (let i = 0; i < names.length; ++i) {
     await key("Tab");
     seen.push(await focused());
   }
-  assert.deepEqual(seen, ["Pictures", "Every n-th step", "Transparent ground", "Save"]);
+  assert.deepEqual(seen, names);
   const { bytes } = await savedBy(stage, page, () => key("Enter"));
   sizeOf(bytes);
   await key("Shift+P");

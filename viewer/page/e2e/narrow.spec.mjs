@@ -149,6 +149,13 @@ async function accessible(stage) {
         await settled(page);
         await check(name);
       }
+      await page.keyboard.press("Shift+P");
+      const dialog = page.getByRole("dialog", { name: "Save frames as pictures" });
+      await dialog.getByRole("combobox", { name: "Size" }).selectOption({ label: "Own size" });
+      await dialog.getByRole("combobox", { name: "Format" }).selectOption("SVG of lines");
+      await check("dialog of frames");
+      const inside = await dialog.evaluate((element) => element.scrollWidth <= element.clientWidth);
+      assert.ok(inside, `the dialog is wider than its box, ${viewport.width}`);
     }
   }
 }

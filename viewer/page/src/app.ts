@@ -2,6 +2,7 @@
 import { Client, type Status } from "./client";
 import { Film } from "./capture/film";
 import { FramesRun } from "./capture/frames";
+import { embeddedJob, failJob, runJob } from "./capture/job";
 import { savePicture } from "./capture/picture";
 import { listenToKeys } from "./keyboard";
 import { Model, TOOLS, type Layer, type Tool } from "./model";
@@ -23,7 +24,10 @@ import { openSocket } from "./transport/socket";
 import { hasCargo, openWorker } from "./transport/worker";
 import { AXIS_VIEWS, type AxisView } from "./view/camera";
 import { SceneView } from "./view/scene_view";
-import { cameraOf, readView, showView, viewOf } from "./view_state";
+import { applyCamera, MOST_STORED, showView, viewOf, type ViewState } from "./view_state";
+import { firstView } from "./views/first_view";
+import { viewOfHash } from "./views/view_file";
+import { Views } from "./views/views";
 
 const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
   select: ["Select", "V"],
@@ -72,23 +76,40 @@ export class App {
   private tab = "";
   private hasDrawn = false;  // a frame of the present scene
   private hasRestored = false;
+  /** Set in a page that draws for `supple render`. */
+  private readonly job = embeddedJob();
+  private linked: Partial<ViewState> | null = null;
+  /** The step of the view that the page began with. */
+  private moment: number | undefined;
+  private views!: Views;
 
   constructor(private readonly body: HTMLElement) {}
 
   start(): void {
-    this.applyTheme(localStore(THEME));
+    this.applyTheme(this.job?.theme ?? localStore(THEME));
     this.body.append(this.canvas, this.card.element, this.notices.element);
     try {
       this.view = new SceneView(this.canvas, this.model);
     } catch (error) {
       this.card.fail("This page cannot draw", cannotDraw(error));
+      this.client = new Client(this.model, openSocket, () => null);
+      this.fail(cannotDraw(error));
       return;
     }
     this.build();
     this.listen();
     this.paint();
-    this.client.connect();
     this.exposeForTests();
+    const connect = () => this.client.connect();
+    viewOfHash(location.hash).then((view) => (this.linked = view), (error: Error) => this.notices.show(error.message)).then(connect);
+  }
+
+  /** Says to the program whose job this page does that it cannot. */
+  fail(text: string): void {
+    if (!this.job) return;
+    this.client.on("status", ({ state }) => state === "connected" && failJob(this.client, text));
+    if (this.client.status.state === "connected") void failJob(this.client, text);
+    else this.client.connect();
   }
 
   private build(): void {
@@ -105,6 +126,8 @@ export class App {
     this.framesDialog = new FramesDialog(
       model, view, (plan, signal, progress) => new FramesRun(model, this.client, view, plan, signal, progress).go(), (text) => this.notices.show(text),
     );
+    this.views = new Views(model, this.client, { view: () => this.viewState(), apply: (state) => this.applyView(state), say: (text) => this.notices.show(text) });
+    this.scenePanel.element.append(this.views.element);
     const details = this.tabs({
       Inspect: h("div", {}, inspector.element, new NodePairs(model, this.client).element),
       Contacts: new ContactTable(model, (point, reach) => view.flyTo(point, reach)).element,
@@ -113,7 +136,7 @@ export class App {
       Settings: h("div", {}, program.element, new Settings(model, this.client).element),
     });
     this.drawers = [this.drawer("scene", "Scene", this.scenePanel.element), this.drawer("details", "Details", details)];
-    this.body.append(this.header(), program.banner, this.scenePanel.element, details, this.player.element, this.help, this.framesDialog.element);
+    this.body.append(this.header(), program.banner, this.scenePanel.element, details, this.player.element, this.help, this.framesDialog.element, this.views.dialog);
     listenToKeys(this);
   }
 
@@ -220,6 +243,7 @@ export class App {
     });
     model.on("frame", ({ text }) => {
       this.card.hide();
+      this.beginMoment();
       const last = this.arrivals.at(-1);
       if (last && text.time < last.time) this.arrivals = [];
       this.arrivals.push({ at: performance.now(), time: text.time });
@@ -247,27 +271,41 @@ export class App {
   }
 
   private restoreView(): void {
-    const { model, view } = this;
-    const stored = readView(localStore(VIEW + model.scene!.title));
+    const { view, step, withCamera } = firstView(localStore(VIEW + this.model.scene!.title), this.linked, (text) => this.notices.show(text));
     this.hasRestored = true;
-    if (!stored) return;
-    showView(model, stored);
+    this.moment = step;
+    // The first frame shall be that of the view: the session has played no step before it has credit.
+    if (step !== undefined || this.job) this.client.send({ do: "pause" });
+    // The first camera fits the shape of the picture. A size that is too large is an error of the job.
+    if (this.job && Math.max(this.job.width, this.job.height) <= this.view.largestSide) this.view.setPicture(this.job);
+    if (view) this.applyView(view, withCamera);
+  }
+
+  private applyView(view: Partial<ViewState>, withCamera = true): void {
+    const { model, view: { rig } } = this;
+    showView(model, view);
     model.emit("display", null);  // a change of the upward axis turns the camera
-    const camera = cameraOf(stored);
-    // A link has its own camera. A reloaded address may be older than what was stored.
-    const [navigation] = performance.getEntriesByType("navigation") as PerformanceNavigationTiming[];
-    if (camera && (navigation?.type === "reload" || !location.hash.includes("camera="))) {
-      view.rig.state = camera;
-      view.rig.save();  // the first frame takes the camera of the address
-    }
-    if (stored.tab && document.getElementById(`tab-${stored.tab}`)) this.openTab(stored.tab);
-    this.body.classList.toggle("bare", stored.panels === false);
+    model.emit("request", null);
+    if (withCamera) applyCamera(rig, view.camera ?? {});
+    this.showProjection();
+    if (view.tab) this.openTab(view.tab);
+    if (view.panels !== undefined) this.body.classList.toggle("bare", !view.panels);
+  }
+
+  /** After the first frame: goes to the step of a link, or does the job of `supple render`. */
+  private beginMoment(): void {
+    const { moment, job, model, client, view } = this;
+    if (model.framesSeen > 1) return;
+    if (job) void runJob(job, moment ?? 0, model, client, view);
+    else if (moment !== undefined) this.views.goTo(moment);
+  }
+
+  private viewState(most?: number): ViewState {
+    return viewOf(this.model, this.view.rig, { tab: this.tab, panels: !this.body.classList.contains("bare") }, most);
   }
 
   private storeView(): void {
-    if (!this.hasRestored) return;
-    const page = { tab: this.tab, panels: !this.body.classList.contains("bare") };
-    localStore(VIEW + this.model.scene!.title, JSON.stringify(viewOf(this.model, this.view.rig, page)));
+    if (this.hasRestored) localStore(VIEW + this.model.scene!.title, JSON.stringify(this.viewState(MOST_STORED)));
   }
 
   /** Updates that are not needed in every frame. */
@@ -315,8 +353,12 @@ export class App {
   }
 
   toggleOrthographic(): void {
-    const on = !this.view.rig.isOrthographic;
-    this.view.rig.setOrthographic(on);
+    this.view.rig.setOrthographic(!this.view.rig.isOrthographic);
+    this.showProjection();
+  }
+
+  private showProjection(): void {
+    const on = this.view.rig.isOrthographic;
     setIcon(this.orthoButton, on ? "ortho" : "perspective", on ? "Perspective" : "Orthographic", "O");
   }
 

@@ -75,6 +75,14 @@ export class Client extends Emitter<ClientEvents> {
     if (this.status.state !== "ended") this.transport?.send(command);
   }
 
+  /** Sends a result to the program (docs/protocol.md): what it is, and the content of a file. */
+  async deliver(head: Record<string, unknown>, content?: Blob): Promise<void> {
+    const text = new TextEncoder().encode(JSON.stringify(head));
+    const length = new DataView(new ArrayBuffer(4));
+    length.setUint32(0, text.length, true);
+    await this.transport?.deliver?.(new Blob([length.buffer, text, content ?? ""]));
+  }
+
   /** Sends a command that has an answer. */
   ask(command: Record<string, unknown>): Promise<Record<string, unknown>> {
     if (this.status.state === "ended") return Promise.reject(new Error("there is no session"));

@@ -9,9 +9,12 @@ import "./styles/narrow.css";  // the last one, because it changes the layout of
 import { App } from "./app";
 import { h } from "./panels/dom";
 
+const app = new App(document.body);
+
 /** Shows any error, so that the page is never blank. */
 function fail(error: unknown): void {
   const text = error instanceof Error ? error.message : String(error);
+  app.fail(text);
   const card = h("div", { class: "card", role: "alertdialog", "aria-label": "The page has failed" }, h("h2", {}, "The page has failed"), h("p", {}, text));
   const reload = h("button", { type: "button", class: "primary", onclick: () => location.reload() }, "Reload");
   card.append(reload);
@@ -30,7 +33,7 @@ addEventListener("error", (event) => {
 addEventListener("unhandledrejection", (event) => failOnce(event.reason));
 
 try {
-  new App(document.body).start();
+  app.start();
 } catch (error) {
   failOnce(error);
 }

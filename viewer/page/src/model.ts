@@ -201,6 +201,8 @@ export class Model extends Emitter<ModelEvents> {
   up: "y" | "z" = "y";
   pointSize = 5;
   normalLength = 24;  // in CSS pixels
+  /** Part of the names of objects: the list of contacts has only objects with it. */
+  filter = "";
 
   tool: Tool = "select";
   selection: Selection | null = null;
@@ -302,6 +304,11 @@ export class Model extends Emitter<ModelEvents> {
         for (const event of eventsOf(events[kind][side])) if (event.frame > known) list.push(event);
       }
     this.emit("history", null);
+  }
+
+  /** The unit of lengths; empty when the scene has none. */
+  get unit(): string {
+    return this.objects.some(({ isBody, kind }) => isBody || kind === "rigid") ? "m" : "";
   }
 
   /** Whether time changes anything. */

@@ -1,82 +1,80 @@
 /**
- * What the user chose: camera, layers, marks, objects and panels, as one object that JSON can hold. The
- * browser keeps it for each scene, so that it survives a reload and a restart of the program.
+ * What the user chose: camera, layers, marks, objects and panels, as one object that JSON can hold. A view file
+ * has it, and the browser keeps it for each scene, so that it survives a reload and a restart of the program.
+ * `protocol/view_members.ts` has the ranges of all members; docs/view_file.md describes them.
  */
 import { objectColour } from "./colours";
 import { LAYERS, type Layer, type Model, type NodeChoice } from "./model";
 import type { CameraRig, CameraState } from "./view/camera";
 
-/** Numbers and switches of the model that are part of a view. */
-const MARKS = ["throughSurfaces", "pointSize", "normalLength", "smooth", "occlusion", "xray", "slice", "sliceAt", "sliceFlipped", "up"] as const;
-type Marks = Pick<Model, (typeof MARKS)[number]>;
+/** Members of the model that are part of a view, by their names in a view. */
+const MARKS = {
+  through_surfaces: "throughSurfaces", point_size: "pointSize", normal_length: "normalLength", smooth: "smooth", occlusion: "occlusion",
+  xray: "xray", slice: "slice", slice_at: "sliceAt", slice_flipped: "sliceFlipped", up: "up",
+} as const satisfies Record<string, keyof Model>;
+type Marks = { [Name in keyof typeof MARKS]: Model[(typeof MARKS)[Name]] };
 
 export interface ViewState {
   version: 1;
-  camera: CameraState;
+  /** Of a link to a moment. */
+  step?: number;
+  camera: Partial<CameraState>;
   layers: Partial<Record<Layer, boolean>>;
-  octree: { onlySelected: boolean; level: number };
+  octree: { only_selected: boolean; level: number };
   nodes: NodeChoice;
   marks: Partial<Marks>;
   /** By name. Objects of the same name look the same. */
-  objects: Record<string, { visible: boolean; colour: string; opacity: number }>;
+  objects: Record<string, Partial<ObjectLook>>;
+  filter: string;
   tab: string;
   panels: boolean;
 }
 
-/** More objects than these are not stored: browsers keep a few megabytes for each site. */
-const MOST_OBJECTS = 2000;
+interface ObjectLook {
+  visible: boolean;
+  colour: string;
+  opacity: number;
+}
 
-export function viewOf(model: Model, rig: CameraRig, page: Pick<ViewState, "tab" | "panels">): ViewState {
-  const objects = model.objects.slice(0, MOST_OBJECTS).filter((object) => !object.visible || object.opacity !== 1 || object.colour !== objectColour(object.index));
+/** More objects than these are not stored by the browser, which keeps a few megabytes for each site. */
+export const MOST_STORED = 2000;
+
+export function viewOf(model: Model, rig: CameraRig, page: Pick<ViewState, "tab" | "panels">, most = Infinity): ViewState {
+  const objects = model.objects.slice(0, most).filter((object) => !object.visible || object.opacity !== 1 || object.colour !== objectColour(object.index));
   return {
-    version: 1, camera: rig.state, layers: { ...model.layers }, octree: { ...model.octree }, nodes: { ...model.nodes },
-    marks: Object.fromEntries(MARKS.map((name) => [name, model[name]])) as Marks,
+    version: 1, camera: rig.state, layers: { ...model.layers },
+    octree: { only_selected: model.octree.onlySelected, level: model.octree.level }, nodes: { ...model.nodes },
+    marks: Object.fromEntries(Object.entries(MARKS).map(([name, member]) => [name, model[member]])) as Marks,
     objects: Object.fromEntries(objects.map(({ name, visible, colour, opacity }) => [name, { visible, colour, opacity }])),
-    ...page,
+    filter: model.filter, ...page,
   };
 }
 
-const isRecord = (value: unknown): value is Record<string, unknown> => typeof value === "object" && value !== null && !Array.isArray(value);
-const isNumber = (value: unknown): value is number => Number.isFinite(value);
-const isPoint = (value: unknown): boolean => Array.isArray(value) && value.length === 3 && value.every(isNumber);
-
-function isCamera(value: unknown): value is CameraState {
-  return isRecord(value) && isPoint(value["position"]) && isPoint(value["target"]) && isNumber(value["zoom"]) && value["zoom"] > 0;
-}
-
-/** Reads a stored view; null for anything else. Members that are missing keep their value. */
-export function readView(text: string | null): Partial<ViewState> | null {
-  let value: unknown;
-  try {
-    value = JSON.parse(text ?? "");
-  } catch {
-    return null;
-  }
-  return isRecord(value) && value["version"] === 1 ? (value as Partial<ViewState>) : null;
-}
-
-export const cameraOf = (view: Partial<ViewState>): CameraState | null => (isCamera(view.camera) ? view.camera : null);
-
-/** Applies everything but the camera and the panels. */
+/** Applies a checked view, except its camera, step and panels. Members that are missing keep their value. */
 export function showView(model: Model, view: Partial<ViewState>): void {
-  const { layers, octree, nodes, marks, objects } = view;
-  if (isRecord(layers)) for (const layer of LAYERS) if (typeof layers[layer] === "boolean") model.layers[layer] = layers[layer];
-  if (isRecord(octree) && typeof octree.onlySelected === "boolean" && isNumber(octree.level)) model.octree = { onlySelected: octree.onlySelected, level: octree.level };
-  if (isRecord(nodes) && isNumber(nodes.level)) {
+  const { layers, octree, nodes, marks, objects, filter } = view;
+  for (const layer of LAYERS) model.layers[layer] = layers?.[layer] ?? model.layers[layer];
+  model.octree = { onlySelected: octree?.only_selected ?? model.octree.onlySelected, level: octree?.level ?? model.octree.level };
+  if (nodes) {
     const pair = nodes.objects;
-    const exists = Array.isArray(pair) && pair.length === 2 && pair.every((object) => object in model.objects);
-    model.nodes = { objects: exists ? pair : null, level: nodes.level };
+    model.nodes = { objects: pair?.every((object) => object in model.objects) ? pair : null, level: nodes.level ?? model.nodes.level };
   }
-  if (isRecord(marks))
-    for (const name of MARKS) if (typeof marks[name] === typeof model[name]) (model as unknown as Record<string, unknown>)[name] = marks[name];
-  if (model.up !== "z") model.up = "y";
-  if (!["x", "y", "z"].includes(model.slice)) model.slice = "off";
-  if (isRecord(objects))
+  for (const [name, member] of Object.entries(MARKS)) {
+    const value = marks?.[name as keyof Marks];
+    if (value !== undefined) (model as unknown as Record<string, unknown>)[member] = value;
+  }
+  if (objects)
     for (const object of model.objects) {
-      const kept = Object.hasOwn(objects, object.name) ? objects[object.name] : undefined;
-      if (!isRecord(kept)) continue;
-      if (typeof kept.visible === "boolean") object.visible = kept.visible;
-      if (typeof kept.colour === "string" && /^#[0-9a-f]{6}$/i.test(kept.colour)) object.colour = kept.colour;
-      if (isNumber(kept.opacity)) object.opacity = Math.max(0, Math.min(1, kept.opacity));
+      const look = Object.hasOwn(objects, object.name) ? objects[object.name]! : {};
+      object.visible = look.visible ?? true;
+      object.colour = look.colour ?? objectColour(object.index);
+      object.opacity = look.opacity ?? 1;
     }
+  model.filter = filter ?? model.filter;
+}
+
+/** Without a position and a target, the camera still frames the scene. */
+export function applyCamera(rig: CameraRig, camera: Partial<CameraState>): void {
+  if (camera.position || camera.target || camera.zoom !== undefined) rig.state = { ...rig.state, ...camera };
+  else if (camera.orthographic !== undefined) rig.setOrthographic(camera.orthographic);
 }

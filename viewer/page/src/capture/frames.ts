@@ -3,18 +3,18 @@ import type { Client } from "../client";
 import type { Model } from "../model";
 import { download, readable, stamp } from "../panels/dom";
 import type { FrameText } from "../protocol/messages";
-import type { PictureSize, SceneView } from "../view/scene_view";
+import type { SceneView } from "../view/scene_view";
 import { Archive } from "./archive";
-import { takePicture } from "./picture";
+import { drawFigure, ratioOf, type Figure } from "./figure";
 
 export interface FramesPlan {
-  /** Number of pictures, ≥ 1. The first shows the current step. */
+  /** The step of the first picture; null for the current one. */
+  first: number | null;
+  /** Number of pictures, ≥ 1. */
   count: number;
   /** Steps between two pictures, ≥ 1. */
   every: number;
-  size: PictureSize;
-  /** Omits the ground and makes the background transparent. */
-  transparent: boolean;
+  figure: Figure;
 }
 
 interface Taken {
@@ -23,12 +23,44 @@ interface Taken {
   time: number;
 }
 
-const nameOf = (step: number): string => `frame_${String(step).padStart(6, "0")}.png`;
+type Keep = (picture: Blob, at: FrameText) => Promise<void>;
 
 /**
- * Takes the pictures of a plan and saves them: one picture as PNG, more as a ZIP with `frames.json`. The
- * session is paused first and stays at the last step. If the session ends or `signal` aborts, the pictures
- * taken so far are saved.
+ * Takes the pictures of a plan, one after the other. The session is paused first and stays at the last step.
+ * Throws a sentence when the session ends or fails, with the reason of `signal`, or what `keep` throws.
+ */
+export async function takeFrames(model: Model, client: Client, view: SceneView, plan: FramesPlan, signal: AbortSignal, keep: Keep): Promise<void> {
+  const goTo = (wanted: number, steps: number): Promise<FrameText> => {
+    const arrival = client.frameThat((frame) => frame.step === wanted, signal);
+    client.send(model.can("seek") ? { do: "seek", frame: wanted } : { do: "step", count: steps });
+    return arrival;
+  };
+  const { figure, first, every, count } = plan;
+  try {
+    view.setPicture(figure.size, figure.background, ratioOf(figure, view));
+    await client.ask({ do: "pause" });
+    let at = await client.frameThat((frame) => !frame.playing, signal);
+    if (first !== null && at.step !== first) at = await goTo(first, first - at.step);
+    for (let taken = 1; ; ++taken) {
+      const picture = drawFigure(model, view, figure);
+      const hasMore = taken < count && at.step + every < (model.scene!.frames ?? Infinity);
+      const next = hasMore ? goTo(at.step + every, every) : null;  // runs while this picture is encoded
+      next?.catch(() => {});  // the error is reported after the picture is stored
+      await keep(await picture, at);
+      if (!next) return;
+      at = await next;
+    }
+  } catch (error) {
+    throw client.status.state === "ended" ? new Error("The session has ended.") : error;
+  } finally {
+    view.setPicture(null);
+    client.send({ do: "pause" });  // drops steps that are no longer needed
+  }
+}
+
+/**
+ * Takes the pictures of a plan and saves them: one picture alone, more as a ZIP with `frames.json`. If the session
+ * ends or `signal` aborts, the pictures taken so far are saved.
  */
 export class FramesRun {
   private readonly taken: Taken[] = [];
@@ -44,43 +76,15 @@ export class FramesRun {
   async go(): Promise<string> {
     let fault: string | null = null;
     try {
-      this.view.setPicture(this.plan.size, this.plan.transparent);
-      await this.take();
+      await takeFrames(this.model, this.client, this.view, this.plan, this.signal, (picture, at) => this.keep(picture, at));
     } catch (error) {
-      fault = this.client.status.state === "ended" ? "The session has ended." : (error as Error).message;
-    } finally {
-      this.view.setPicture(null);
-      this.client.send({ do: "pause" });  // drops steps that are no longer needed
+      fault = (error as Error).message;
     }
     return this.save(fault);
   }
 
-  private async take(): Promise<void> {
-    await this.client.ask({ do: "pause" });
-    let at = await this.client.frameThat((frame) => !frame.playing, this.signal);
-    for (;;) {
-      const picture = takePicture(this.view);
-      const next = this.hasMore(at) ? this.advance(at) : null;  // runs while this picture is encoded
-      next?.catch(() => {});  // the error is reported after the picture is stored
-      await this.keep(await picture, at);
-      if (!next) return;
-      at = await next;
-    }
-  }
-
-  private hasMore({ step }: FrameText): boolean {
-    return this.taken.length + 1 < this.plan.count && step + this.plan.every < (this.model.scene!.frames ?? Infinity);
-  }
-
-  private advance({ step }: FrameText): Promise<FrameText> {
-    const wanted = step + this.plan.every;
-    const arrival = this.client.frameThat((frame) => frame.step === wanted, this.signal);
-    this.client.send(this.model.can("seek") ? { do: "seek", frame: wanted } : { do: "step", count: this.plan.every });
-    return arrival;
-  }
-
   private async keep(picture: Blob, { step, time }: FrameText): Promise<void> {
-    const file = nameOf(step);
+    const file = `frame_${String(step).padStart(6, "0")}.${this.plan.figure.format}`;
     if (this.plan.count > 1) await this.archive.add(file, picture);
     this.newest = picture;
     this.taken.push({ file, step, time });
@@ -91,7 +95,7 @@ export class FramesRun {
     const count = this.taken.length;
     if (count === 0) return `No picture was taken. ${fault}`;
     const isAlone = this.plan.count === 1;
-    const name = `supple-${stamp()}.${isAlone ? "png" : "zip"}`;
+    const name = `supple-${stamp()}.${isAlone ? this.plan.figure.format : "zip"}`;
     if (!isAlone) await this.archive.add("frames.json", new Blob([JSON.stringify(this.description(fault), null, 1)]));
     download(isAlone ? this.newest! : this.archive.end(), name);
     const all = count === 1 ? `The picture is saved: ${name}.` : `${readable(count)} pictures are saved: ${name}.`;
@@ -101,9 +105,9 @@ export class FramesRun {
   /** The content of `frames.json`. Positions are relative to the scene's `center`, as in all messages. */
   private description(fault: string | null): Record<string, unknown> {
     const { title, version, source, center } = this.model.scene!;
-    const { size, transparent, count } = this.plan;
+    const { figure: { size, dpi, background }, count } = this.plan;
     return {
-      title, version, source, ...size, transparent, center, camera: this.view.rig.description(),
+      title, version, source, ...size, dpi, background, center, camera: this.view.rig.description(),
       planned: count, ended: fault, frames: this.taken,
     };
   }

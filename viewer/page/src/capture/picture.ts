@@ -1,15 +1,9 @@
 import { download, stamp } from "../panels/dom";
 import type { SceneView } from "../view/scene_view";
 
-/**
- * Encodes the current view as PNG. The view is captured before the function returns; only the encoding is
- * asynchronous.
- */
-export function takePicture(view: SceneView): Promise<Blob> {
-  view.draw();  // the browser keeps the canvas only until the end of this task
+/** Encodes what a canvas shows now as PNG. */
+export function encode(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) => {
-    const { fault, canvas } = view;
-    if (fault) return reject(new Error(fault));
     canvas.toBlob(
       (blob) => (blob ? resolve(blob) : reject(new Error(`The browser does not have enough memory for a picture of ${canvas.width} × ${canvas.height}. Choose a smaller size.`))),
       "image/png",
@@ -19,5 +13,7 @@ export function takePicture(view: SceneView): Promise<Blob> {
 
 /** Saves the view of the window. */
 export async function savePicture(view: SceneView): Promise<void> {
-  download(await takePicture(view), `supple-${stamp()}.png`);
+  view.draw();  // the browser keeps the canvas only until the end of this task
+  if (view.fault) throw new Error(view.fault);
+  download(await encode(view.canvas), `supple-${stamp()}.png`);
 }

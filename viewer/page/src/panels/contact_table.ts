@@ -16,7 +16,7 @@ export class ContactTable {
   readonly element: HTMLElement;
   private readonly summary = h("p", { class: "hint", "aria-live": "off" });
   private readonly window: RowWindow<Row>;
-  private readonly filter = h("input", { type: "search", placeholder: "Filter by name", "aria-label": "Filter contacts by name", oninput: () => this.update() });
+  private readonly filter = h("input", { type: "search", placeholder: "Filter by name", "aria-label": "Filter contacts by name", oninput: () => this.setFilter(this.filter.value) });
   private listed: TouchingPair[] = [];
   /** The first row of each listed pair, and the number of rows. */
   private starts: number[] = [0];
@@ -50,6 +50,7 @@ export class ContactTable {
       this.update();
     });
     model.on("selection", () => this.window.draw());
+    model.on("display", () => this.filter.value !== model.filter && this.setFilter(model.filter));
   }
 
   private nameOf(object: number): string {
@@ -81,10 +82,16 @@ export class ContactTable {
     return [...pairs].sort((p, q) => (reversed ? order(q, p) : order(p, q)));
   }
 
+  private setFilter(text: string): void {
+    if (this.filter.value !== text) this.filter.value = text;
+    this.model.filter = text;
+    this.update();
+  }
+
   private update(): void {
     const { frame } = this.model;
     const all = frame ? pairsOf(frame) : [];
-    const wanted = this.filter.value.trim().toLowerCase();
+    const wanted = this.model.filter.trim().toLowerCase();
     this.listed = this.sorted(wanted === "" ? all : all.filter(({ a, b }) => [a, b].some((object) => this.nameOf(object).toLowerCase().includes(wanted))));
     this.starts = [0];
     for (const pair of this.listed) this.starts.push(this.starts.at(-1)! + 1 + (this.open.has(keyOf(pair)) ? pair.count : 0));

@@ -1,12 +1,17 @@
-/** Asks which frames to save and at which size, then shows the progress. */
+/** Asks which frames to save, at which size and with what around them, then shows the progress. */
 import { MOST_FILES } from "../capture/archive";
+import type { Figure } from "../capture/figure";
 import type { FramesPlan } from "../capture/frames";
 import type { Model } from "../model";
-import type { PictureSize, SceneView } from "../view/scene_view";
+import type { Background, PictureSize, SceneView } from "../view/scene_view";
 import { h, readable, sheet } from "./dom";
 
 const MOST_STEPS = 1_000_000;
 const USUAL_COUNT = 300;
+const USUAL_DPI = 300;
+const MILLIMETRES_PER_INCH = 25.4;
+const BACKGROUNDS: Record<Background, string> = { theme: "As in the window", white: "White", transparent: "Transparent" };
+const FORMATS: Record<Figure["format"], string> = { png: "PNG", svg: "SVG of lines" };
 const USUAL_SIZES: PictureSize[] = [{ width: 1920, height: 1080 }, { width: 3840, height: 2160 }];
 
 const words = ({ width, height }: PictureSize): string => `${width} × ${height}`;
@@ -19,15 +24,21 @@ export class FramesDialog {
   readonly element: HTMLDialogElement;
   private running: AbortController | null = null;
   private readonly size = h("select", { "aria-label": "Size", autofocus: true });
-  private readonly width = this.number("Width", 2);
-  private readonly height = this.number("Height", 2);
+  private readonly width = this.number("Width", 1);
+  private readonly height = this.number("Height", 1);
+  private readonly unit = h("select", { "aria-label": "Unit" }, h("option", { value: "pixels" }, "px"), h("option", { value: "millimetres" }, "mm"));
+  private readonly dpi = h("input", { type: "number", "aria-label": "Pixels per inch", min: 10, max: 2400, step: "any", placeholder: "as in the window" });
+  private readonly format = this.choice("Format", FORMATS);
+  private readonly background = this.choice("Background", BACKGROUNDS);
+  private readonly legend = h("input", { type: "checkbox" });
+  private readonly scaleBar = h("input", { type: "checkbox" });
   private readonly count = this.number("Pictures", 1);
   private readonly until = this.number("Last frame", 0);
   private readonly every = this.number("Every n-th step", 1);
-  private readonly transparent = h("input", { type: "checkbox" });
   private readonly summary = h("output", { class: "hint", "aria-label": "What will be saved" });
   private readonly form: HTMLFormElement;
-  private readonly own = h("label", {}, h("span", {}, "Own size"), h("span", { class: "pair" }, this.width, "×", this.height));
+  private readonly own = h("label", {}, h("span", {}, "Own size"), h("span", { class: "pair" }, this.width, "×", this.height, this.unit));
+  private readonly hint = h("p", { class: "hint", hidden: true }, "Outlines, wireframes, contact segments and points as vectors. Surfaces hide what is behind them, to a pixel.");
   private readonly counted = h("label", {}, h("span", {}, "Pictures"), this.count);
   private readonly reached = h("label", {}, h("span", {}, "Up to frame"), this.until);
   private readonly bar = h("progress", { "aria-label": "Pictures taken" });
@@ -38,12 +49,15 @@ export class FramesDialog {
   constructor(private readonly model: Model, private readonly view: SceneView, private readonly save: Save, private readonly say: (text: string) => void) {
     this.form = h(
       "form", { onsubmit: (event: SubmitEvent) => this.submit(event), oninput: () => this.fit() },
-      h("label", {}, h("span", {}, "Size"), this.size), this.own, this.counted, this.reached,
-      h("label", {}, h("span", {}, "Every n-th step"), this.every),
-      h("label", { class: "check" }, this.transparent, "Transparent ground"),
+      this.row("Format", this.format), this.hint, this.row("Size", this.size), this.own,
+      h("label", { title: "The file says it, and texts and marks have their size in print" }, h("span", {}, "Pixels per inch"), this.dpi),
+      this.counted, this.reached, this.row("Every n-th step", this.every), this.row("Background", this.background),
+      h("label", { class: "check" }, this.legend, "Legend with the names of objects"),
+      h("label", { class: "check" }, this.scaleBar, "Scale bar"),
       this.summary,
       h("button", { type: "submit", class: "primary" }, "Save"),
     );
+    this.unit.addEventListener("change", () => this.convert());
     this.element = sheet("Save frames as pictures", "frames", this.form, this.work);
     this.element.addEventListener("cancel", (event) => {
       if (!this.running) return;
@@ -56,6 +70,14 @@ export class FramesDialog {
 
   private number(label: string, min: number): HTMLInputElement {
     return h("input", { type: "number", "aria-label": label, min, step: 1, required: true });
+  }
+
+  private choice(label: string, words: Record<string, string>): HTMLSelectElement {
+    return h("select", { "aria-label": label }, ...Object.entries(words).map(([value, text]) => h("option", { value }, text)));
+  }
+
+  private row(label: string, input: HTMLElement): HTMLElement {
+    return h("label", {}, h("span", {}, label), input);
   }
 
   private get frames(): number | null {
@@ -94,7 +116,6 @@ export class FramesDialog {
       h("option", { value: "" }, "Own size"),
     );
     this.size.selectedIndex = Math.max(0, chosen);
-    for (const input of [this.width, this.height]) input.max = String(most);
     this.width.value ||= String(window[0]!.width);
     this.height.value ||= String(window[0]!.height);
   }
@@ -103,24 +124,53 @@ export class FramesDialog {
     return h("option", { value: `${width} ${height}`, disabled: Math.max(width, height) > most }, label);
   }
 
+  /** Keeps the size when its unit changes. */
+  private convert(): void {
+    this.dpi.value ||= String(USUAL_DPI);
+    const pixels = this.dpi.valueAsNumber / MILLIMETRES_PER_INCH;
+    for (const input of [this.width, this.height])
+      input.value = String(this.unit.value === "millimetres" ? Math.round((10 * input.valueAsNumber) / pixels) / 10 : Math.round(input.valueAsNumber * pixels));
+    this.fit();
+  }
+
+  /** In pixels; missing numbers are NaN. */
+  private chosenSize(dpi: number | null): PictureSize {
+    const [width, height] = this.size.value.split(" ").map(Number);
+    if (height !== undefined) return { width: width!, height };
+    const scale = this.unit.value === "millimetres" ? dpi! / MILLIMETRES_PER_INCH : 1;
+    return { width: Math.round(scale * this.width.valueAsNumber), height: Math.round(scale * this.height.valueAsNumber) };
+  }
+
   /** The chosen values; missing numbers are NaN. */
   private plan(): FramesPlan {
-    const [width, height] = this.size.value.split(" ").map(Number);
-    const size = height === undefined ? { width: this.width.valueAsNumber, height: this.height.valueAsNumber } : { width: width!, height };
+    const dpi = Number.isNaN(this.dpi.valueAsNumber) ? null : this.dpi.valueAsNumber;
     const every = this.every.valueAsNumber;
     const count = this.frames === null ? this.count.valueAsNumber : 1 + Math.floor((this.until.valueAsNumber - this.step) / every);
-    return { count: Math.min(count, MOST_FILES), every, size, transparent: this.transparent.checked };
+    const figure = {
+      size: this.chosenSize(dpi), dpi, format: this.format.value as Figure["format"], background: this.background.value as Background,
+      legend: this.legend.checked, scaleBar: this.scaleBar.checked,
+    };
+    return { first: null, count: Math.min(count, MOST_FILES), every, figure };
   }
 
   /** Shows the fields that match the choice, and a summary of it. */
   private fit(): void {
     this.until.min = String(this.step);
     this.own.hidden = this.width.disabled = this.height.disabled = this.size.value !== "";
-    const { count, every, size } = this.plan();
+    const isInMillimetres = this.size.value === "" && this.unit.value === "millimetres";
+    this.dpi.required = isInMillimetres;  // millimetres need it
+    this.hint.hidden = this.format.value !== "svg";
+    for (const input of [this.width, this.height]) {
+      input.max = isInMillimetres ? "" : String(this.view.largestSide);
+      input.step = isInMillimetres ? "any" : "1";
+    }
+    const { count, every, figure: { size, format } } = this.plan();
+    const isTooLarge = isInMillimetres && Math.max(size.width, size.height) > this.view.largestSide;
+    this.width.setCustomValidity(isTooLarge ? `This browser draws at most ${readable(this.view.largestSide)} pixels a side: ${words(size)} are too many. Choose a smaller size, or fewer pixels per inch.` : "");
     const isWhole = [count, every, size.width, size.height].every((x) => Number.isInteger(x) && x > 0);
     const noun = this.frames === null ? "step" : "frame";
     const last = readable(this.step + (count - 1) * every);
-    const text = count === 1 ? `One picture, of ${noun} ${last}, as PNG` : `${readable(count)} pictures, of ${noun} ${readable(this.step)} to ${last}, in one ZIP`;
+    const text = count === 1 ? `One picture, of ${noun} ${last}, as ${format.toUpperCase()}` : `${readable(count)} pictures, of ${noun} ${readable(this.step)} to ${last}, in one ZIP`;
     this.summary.textContent = isWhole ? `${text}; ${words(size)} pixels.` : "";
   }
 

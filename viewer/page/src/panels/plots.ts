@@ -1,10 +1,11 @@
 /** Plots of pairs, contacts and stage times over frames. The cursor marks the current frame. */
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
+import { plotSvg } from "../capture/plot_svg";
 import { OKABE_ITO } from "../colours";
 import { EVENT_LABELS, type Model } from "../model";
 import { EVENT_KINDS, type EventKind } from "../protocol/messages";
-import { colourOf, h, readable, remPixels } from "./dom";
+import { colourOf, download, h, readable, remPixels, stamp } from "./dom";
 
 const HEIGHT = 132;
 const REDRAW_MILLISECONDS = 150;
@@ -62,7 +63,8 @@ export class Plots {
     const stroke = (name: string, i: number) => (name === "total_seconds" ? colourOf("--ink") : LINES[i % LINES.length]!);
     const grid = colourOf("--line");
     const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: `${remPixels() * 0.75}px system-ui` };
-    const holder = h("figure", { "aria-label": title }, h("figcaption", {}, title));
+    const save = h("button", { type: "button", class: "link", "aria-label": `Save ${title} as SVG`, onclick: () => this.save(title, columns, scale) }, "SVG");
+    const holder = h("figure", { "aria-label": title }, h("figcaption", {}, title, " ", save));
     const options: uPlot.Options = {
       width: Math.max(120, this.element.clientWidth),
       height: HEIGHT,
@@ -113,14 +115,22 @@ export class Plots {
       ...EVENT_KINDS.flatMap((kind) => [h("dt", {}, EVENT_LABELS[kind]), h("dd", {}, this.countsOf(kind))]),
     );
     for (const { columns, scale, plot } of this.plots) {
-      const lines = columns.map((name) => {
-        const column = this.model.history.column(name)!;
-        // The total of the library is that of the detection; the plot also has the time of the motion.
-        const motion = name === "total_seconds" ? this.model.history.column("motion_seconds") : null;
-        return scale === 1 ? column : column.map((value, i) => (value + (motion?.[i] ?? 0)) * scale);
-      });
-      plot.setData([frames, ...lines]);
+      plot.setData([frames, ...columns.map((name) => this.values(name, scale))]);
     }
+  }
+
+  private values(name: string, scale: number): number[] {
+    const column = this.model.history.column(name)!;
+    // The total of the library is that of the detection; the plot also has the time of the motion.
+    const motion = name === "total_seconds" ? this.model.history.column("motion_seconds") : null;
+    return scale === 1 ? column : column.map((value, i) => (value + (motion?.[i] ?? 0)) * scale);
+  }
+
+  /** On white, whatever the theme is. */
+  private save(title: string, columns: string[], scale: number): void {
+    const lines = columns.map((name, i) => ({ label: labelOf(name), colour: name === "total_seconds" ? "#1b2027" : LINES[i % LINES.length]!, values: this.values(name, scale) }));
+    const svg = plotSvg(title, this.model.scene!.frames === null ? "step" : "frame", this.model.history.frames, lines);
+    download(new Blob([svg], { type: "image/svg+xml" }), `supple-plot-${stamp()}.svg`);
   }
 
   private countsOf(kind: EventKind): string {

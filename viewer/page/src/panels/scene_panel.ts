@@ -65,6 +65,7 @@ export class ScenePanel {
   private readonly more = h("details", { class: "more" }, h("summary", {}, "More layers"), h("p", { class: "hint" }, "This scene has not produced them yet."), this.moreList);
   /** Layers that have had content since the scene was opened. */
   private seen = new Set<Layer>();
+  private readonly only = h("input", { type: "checkbox" });
   private readonly levels = h("select", { "aria-label": "Octree level" });
   private readonly legend = h(
     "div", { class: "legend", hidden: true, title: "Colours of levels; they repeat after the last colour" },
@@ -129,11 +130,12 @@ export class ScenePanel {
   }
 
   private octreeOptions(): HTMLElement {
+    const { only } = this;
     const request = () => {
       this.model.octree = { onlySelected: only.checked, level: Number(this.levels.value) };
       this.model.emit("request", null);
     };
-    const only = h("input", { type: "checkbox", onchange: request });
+    only.addEventListener("change", request);
     this.levels.addEventListener("change", request);
     return h(
       "div", { class: "options" },
@@ -155,8 +157,11 @@ export class ScenePanel {
   }
 
   private refresh(): void {
-    const { layers } = this.model;
+    const { layers, octree } = this.model;
     for (const [layer, box] of this.boxes) box.checked = layers[layer];
+    this.only.checked = octree.onlySelected;
+    this.levels.value = String(octree.level);
+    if (this.levels.selectedIndex < 0) this.levels.value = "-1";
     this.legend.hidden = !layers.octree && !layers.regions && !layers.nodes;
   }
 

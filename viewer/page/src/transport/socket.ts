@@ -2,6 +2,9 @@ import type { EndReason, Transport, TransportEvents } from "./transport";
 
 const REASONS: Record<number, EndReason> = { 4001: "taken-over", 4002: "program-ended", 4003: "refused", 4004: "failed" };
 
+/** Bytes of results that wait to be sent. */
+const MOST_BUFFERED = 64_000_000;
+
 /** The session of the program that served this page. */
 export function openSocket(events: TransportEvents): Transport {
   const token = new URLSearchParams(location.search).get("token") ?? "";
@@ -27,6 +30,10 @@ export function openSocket(events: TransportEvents): Transport {
   return {
     send(command) {
       if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(command));
+    },
+    async deliver(result) {
+      socket.send(result);
+      while (socket.bufferedAmount > MOST_BUFFERED) await new Promise((done) => setTimeout(done, 5));
     },
     close() {
       closed = true;

@@ -37,6 +37,7 @@ export class CameraRig {
   private radius = 1;
   private aspect = 1;
   private saving: ReturnType<typeof setTimeout> | undefined;
+  private wasSet = false;
 
   constructor(private readonly canvas: HTMLElement, private readonly changed: () => void) {
     this.camera = this.perspective;
@@ -94,6 +95,11 @@ export class CameraRig {
   /** Half the visible height of an orthographic view at zoom 1. */
   private get halfHeight(): number {
     return this.distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+  }
+
+  /** The height of what the camera sees, at its target. */
+  get visibleHeight(): number {
+    return (2 * this.halfHeight) / this.camera.zoom;
   }
 
   private fit(): void {
@@ -219,9 +225,9 @@ export class CameraRig {
 
   /** The camera of a picture, for drawing it again; positions in the camera's coordinates. */
   description(): Record<string, unknown> {
-    const { position, up, zoom } = this.camera;
+    const { position, up } = this.camera;
     const target = this.controls.target.toArray();
-    const kind = this.isOrthographic ? { orthographic: true, height: (2 * this.halfHeight) / zoom } : { orthographic: false, vertical_degrees: FIELD_OF_VIEW };
+    const kind = this.isOrthographic ? { orthographic: true, height: this.visibleHeight } : { orthographic: false, vertical_degrees: FIELD_OF_VIEW };
     return { position: position.toArray(), target, up: up.toArray(), ...kind };
   }
 
@@ -231,6 +237,7 @@ export class CameraRig {
   }
 
   set state({ position, target, zoom, orthographic }: CameraState) {
+    this.wasSet = true;
     this.setOrthographic(orthographic);
     this.flight = null;
     this.camera.position.fromArray(position);
@@ -252,8 +259,9 @@ export class CameraRig {
     }
   }
 
-  /** Restores the view from the address; false when it has none. */
+  /** Restores the view from the address, unless one was set; false when there is none. */
   restore(): boolean {
+    if (this.wasSet) return true;
     const match = /[#&]camera=([^&]*)/.exec(location.hash);
     if (!match) return false;
     const parts = decodeURIComponent(match[1]!).split(",");

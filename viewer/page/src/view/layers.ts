@@ -100,6 +100,35 @@ class Marks {
   }
 }
 
+const areShown = (model: Model, a: number, b: number): boolean => Boolean(model.objects[a]?.visible && model.objects[b]?.visible);
+
+/** Calls `visit` with the offset of each point of contacts or impacts whose objects are both visible. */
+export function eachContactPoint(model: Model, visit: (data: Float32Array, at: number) => void): void {
+  const { frame } = model;
+  if (!frame) return;
+  const { contacts, impacts } = frame;
+  for (let i = 0; i < contacts.length; i += 8) {
+    if (!areShown(model, contacts[i]!, contacts[i + 2]!)) continue;
+    const first = contacts[i + 6]!;
+    for (let k = 0; k < contacts[i + 5]!; ++k) visit(frame.contactPoints, 8 * (first + k));
+  }
+  for (let i = 0; i < impacts.length; i += 8) if (areShown(model, impacts[i]!, impacts[i + 3]!)) visit(frame.impactPoints, i);
+}
+
+/** The same for each segment of a contact, with the offsets of both ends. */
+export function eachContactSegment(model: Model, visit: (data: Float32Array, from: number, to: number) => void): void {
+  const { frame } = model;
+  if (!frame) return;
+  const { contacts, contactPoints } = frame;
+  for (let i = 0; i < contacts.length; i += 8) {
+    const count = contacts[i + 5]!;
+    if (count < 2 || !areShown(model, contacts[i]!, contacts[i + 2]!)) continue;
+    const first = contacts[i + 6]!;
+    const lines = count === 2 ? 1 : count;  // a polygon is closed
+    for (let k = 0; k < lines; ++k) visit(contactPoints, 8 * (first + k), 8 * (first + ((k + 1) % count)));
+  }
+}
+
 export class Layers {
   readonly group = new THREE.Group();
   readonly regions = new Cells("boxes", { colour: "#ffffff", opacity: 0.85 });
@@ -246,20 +275,6 @@ export class Layers {
     else this.fillFaces(this.triangles, on && frame ? frame.contacts : none, 8, [0, 2], () => true);
   }
 
-  /** Calls `visit` with the offset of each point of contacts or impacts whose objects are both visible. */
-  private eachPoint(visit: (data: Float32Array, at: number) => void): void {
-    const { frame } = this.model;
-    if (!frame) return;
-    const { contacts, impacts } = frame;
-    for (let i = 0; i < contacts.length; i += 8) {
-      if (!this.shown(contacts[i]!) || !this.shown(contacts[i + 2]!)) continue;
-      const first = contacts[i + 6]!;
-      for (let k = 0; k < contacts[i + 5]!; ++k) visit(frame.contactPoints, 8 * (first + k));
-    }
-    for (let i = 0; i < impacts.length; i += 8)
-      if (this.shown(impacts[i]!) && this.shown(impacts[i + 3]!)) visit(frame.impactPoints, i);
-  }
-
   private pointCount(): number {
     const { frame } = this.model;
     return frame ? (frame.contactPoints.length + frame.impactPoints.length) / 8 : 0;
@@ -268,7 +283,7 @@ export class Layers {
   private fillPoints(on: boolean): void {
     this.points.fill(on ? this.pointCount() : 0, (into) => {
       let at = 0;
-      this.eachPoint((data, from) => {
+      eachContactPoint(this.model, (data, from) => {
         into[at++] = data[from]!;
         into[at++] = data[from + 1]!;
         into[at++] = data[from + 2]!;
@@ -280,7 +295,7 @@ export class Layers {
   private fillNormals(on: boolean): void {
     this.normals.fill(on ? this.pointCount() : 0, (into) => {
       let at = 0;
-      this.eachPoint((data, from) => {
+      eachContactPoint(this.model, (data, from) => {
         for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + axis]!;
         for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + 4 + axis]!;
       });
@@ -289,20 +304,11 @@ export class Layers {
   }
 
   private fillSegments(on: boolean): void {
-    const { frame } = this.model;
-    if (!on || !frame) return this.segments.fill(0, () => 0);
-    const { contacts, contactPoints } = frame;
-    this.segments.fill(contactPoints.length / 8, (into) => {
+    this.segments.fill(on && this.model.frame ? this.model.frame.contactPoints.length / 8 : 0, (into) => {
       let at = 0;
-      for (let i = 0; i < contacts.length; i += 8) {
-        const count = contacts[i + 5]!;
-        if (count < 2 || !this.shown(contacts[i]!) || !this.shown(contacts[i + 2]!)) continue;
-        const first = contacts[i + 6]!;
-        const lines = count === 2 ? 1 : count;  // a polygon is closed
-        for (let k = 0; k < lines; ++k)
-          for (const point of [first + k, first + ((k + 1) % count)])
-            for (let axis = 0; axis < 3; ++axis) into[at++] = contactPoints[8 * point + axis]!;
-      }
+      eachContactSegment(this.model, (data, from, to) => {
+        for (const end of [from, to]) for (let axis = 0; axis < 3; ++axis) into[at++] = data[end + axis]!;
+      });
       return at / 6;
     });
   }

@@ -23,6 +23,10 @@ const SLOW_MILLISECONDS = 40;
 /** How far objects within a border may move and stay in the first view, relative to their size together. */
 const ROOM = 0.25;
 
+/** Behind the objects of a picture; `theme` is that of the page, with its floor and axes. */
+export type Background = "theme" | "white" | "transparent";
+const WHITE = new THREE.Color(0xffffff);
+
 /** In pixels. */
 export interface PictureSize {
   width: number;
@@ -50,6 +54,7 @@ export class SceneView {
   private readonly highlights: Highlights;
   private readonly projection: Projection = { matrix: new THREE.Matrix4(), version: 0 };
   private readonly size = new THREE.Vector2();
+  private ground = new THREE.Color();
   private wasSmooth = true;
   private dirty = true;
   private filled = false;
@@ -94,9 +99,9 @@ export class SceneView {
   }
 
   setColours(ground: string, ink: string): void {
-    const colour = new THREE.Color(ground);
-    this.renderer.setClearColor(colour, this.renderer.getClearAlpha());
-    this.world.setColours(ink, colour.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5);
+    this.ground = new THREE.Color(ground);
+    this.renderer.setClearColor(this.ground, this.renderer.getClearAlpha());
+    this.world.setColours(ink, this.ground.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5);
     this.invalidate();
   }
 
@@ -140,19 +145,20 @@ export class SceneView {
   }
 
   /**
-   * From now on only `draw` draws, at the given size, independent of the window, and without the ground when
-   * `transparent`. Null returns to the window. Throws with a sentence when WebGL cannot draw that size.
+   * From now on only `draw` draws, at the given size, independent of the window. Marks are drawn `ratio` times
+   * larger than their size in CSS pixels. Null returns to the window. Throws with a sentence when WebGL cannot
+   * draw that size.
    */
-  setPicture(size: PictureSize | null, transparent = false): void {
+  setPicture(size: PictureSize | null, background: Background = "theme", ratio = 1): void {
     this.takesPictures = false;
-    this.world.group.visible = !(size && transparent);
-    this.renderer.setClearAlpha(size && transparent ? 0 : 1);
+    this.world.group.visible = size === null || background === "theme";
+    this.renderer.setClearColor(size && background === "white" ? WHITE : this.ground, size && background === "transparent" ? 0 : 1);
     if (!size) return this.resize();
     const { width, height } = size;
     const most = this.largestSide;
     if (Math.max(width, height) > most) throw new Error(`WebGL draws no picture of ${width} × ${height} here: ${most} pixels a side are the most. Choose a smaller size.`);
     this.rig.advance(Infinity);  // end the flight
-    this.setSize(size, height / (this.canvas.clientHeight || height));
+    this.setSize(size, ratio);
     this.takesPictures = true;
     const gl = this.renderer.getContext();
     if (gl.drawingBufferWidth !== width || gl.drawingBufferHeight !== height)
@@ -196,9 +202,8 @@ export class SceneView {
 
   private placeWorld(): void {
     const { bounds, border, center } = this.model.scene!;
-    const isPhysical = this.model.objects.some(({ isBody, kind }) => isBody || kind === "rigid");
-    const { up } = this.model;
-    this.world.build(bounds, border ?? null, center, isPhysical ? "m" : "", up);
+    const { up, unit } = this.model;
+    this.world.build(bounds, border ?? null, center, unit, up);
     this.rig.setUp(this.world.turn);
     this.surfaces.up = this.rig.camera.up;
     this.shadowIsStale = true;
@@ -436,6 +441,13 @@ export class SceneView {
     this.world.arrange(camera);
     this.layers.arrange(this.projection);
     this.highlights.arrange(this.projection);
+  }
+
+  /** From positions to clip space. */
+  matrix(): number[] {
+    const { camera } = this.rig;
+    camera.updateMatrixWorld();
+    return new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).toArray();
   }
 
   statistics(): { calls: number; triangles: number; points: number } {

@@ -1,0 +1,214 @@
+#include "render/render.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/exit_status.hpp"
+#include "base/interruption.hpp"
+#include "base/missing_threads.hpp"
+#include "base/output_names.hpp"
+#include "base/progress.hpp"
+#include "base/text.hpp"
+#include "commands/build_scene_view.hpp"
+#include "commands/build_simulation.hpp"
+#include "export/embedded.hpp"
+#include "export/page_file.hpp"
+#include "inputs/inputs.hpp"
+#include "render/browser.hpp"
+#include "render/picture_names.hpp"
+#include "server/server.hpp"
+#include "session/messages/json_text.hpp"
+#include "session/messages/json_value.hpp"
+#include "session/messages/mesh_warnings.hpp"
+#include "supple/error.hpp"
+#include "view_file/view_file.hpp"
+
+namespace supple::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A browser that starts on a busy machine needs long.
+constexpr std::chrono::seconds time_to_connect{90};
+
+struct Pixels {
+  std::uint32_t width, height;
+};
+
+Pixels size_in_pixels(const RenderOptions& options) {
+  constexpr double millimetres_of_inch = 25.4;
+  const double scale = options.size.is_in_millimetres ? options.dpi / millimetres_of_inch : 1;
+  const auto pixels = [&](double length) { return std::round(scale * length); };
+  const double width = pixels(options.size.width), height = pixels(options.size.height);
+  if (!(std::min(width, height) >= 1) || std::max(width, height) > most_pixels)
+    throw Error(
+        fmt::format("--size: the pictures would have {:.0f} x {:.0f} pixels; choose a size from 1 to {} "
+                    "pixels a side, or "
+                    "another --dpi",
+                    width, height, most_pixels));
+  return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+}
+
+/// What the page shall draw (docs/protocol.md).
+std::string job_of(const RenderOptions& options, Pixels size) {
+  viewer::JsonText json;
+  json.begin_object();
+  json.key("frames");
+  if (options.frames) {
+    json.begin_array();
+    for (const std::uint64_t number : {options.frames->first, options.frames->last, options.frames->every})
+      json.value(number);
+    json.end_array();
+  } else {
+    json.null();
+  }
+  json.member("width", size.width);
+  json.member("height", size.height);
+  json.member("dpi", options.dpi);
+  json.member("format", options.is_svg ? "svg" : "png");
+  json.member("background", options.background);
+  json.member("theme", options.theme);
+  json.member("legend", options.legend);
+  json.member("scale_bar", options.scale_bar);
+  json.end_object();
+  return std::string(json.text());
+}
+
+/// A result of the page: a JSON object of the length that the first four bytes say, and the content of a
+/// file.
+struct PageResult {
+  viewer::JsonValue head;
+  std::string_view content;
+};
+
+PageResult parse_result(std::span<const std::byte> bytes) {
+  std::uint32_t length = 0;
+  if (bytes.size() >= sizeof length) std::memcpy(&length, bytes.data(), sizeof length);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::size_t fault = 0;
+  std::optional<viewer::JsonValue> head;
+  if (length > 0 && length <= bytes.size() - sizeof length)
+    head = viewer::parse_json(text.substr(sizeof length, length), fault);
+  if (!head) throw Error("the page sent a result that cannot be read; this is a fault of supple");
+  return {std::move(*head), text.substr(sizeof length + length)};
+}
+
+/// One run: takes the pictures from the page and writes them.
+class Run {
+ public:
+  Run(const RenderOptions& options, PictureNames names, Pixels size)
+      : options_(options),
+        names_(std::move(names)),
+        size_(size),
+        planned_(options.frames ? options.frames->count() : 1),
+        progress_(planned_, !options.quiet, "picture") {}
+
+  int go(viewer::SceneView show, const std::string& page, const std::string& program) {
+    viewer::Server server(
+        viewer::Session(std::move(show), options_.budget),
+        {.page = page,
+         .drawing = {[this](std::span<const std::byte> result) { take(parse_result(result)); },
+                     [this] { has_left_ = true; }}});
+    const Interruption interruption;
+    Browser browser(program, options_.uses_graphics_card);
+    browser.open(server.url());
+    const auto start = Clock::now();
+    server.run([&] {
+      if (interruption.signal() != 0 || has_ended_) return true;
+      if (const auto words = browser.end())
+        fault_ = fmt::format("{}: the browser has ended{}{}", program, words->empty() ? "" : ": ", *words);
+      else if (has_left_)
+        fault_ = "the page has ended; the scene or the pictures may be too large for the browser";
+      else if (!has_begun_ && Clock::now() - start > time_to_connect)
+        fault_ = fmt::format("{}: the browser did not open the page within {} s; is it a Chromium?", program,
+                             time_to_connect.count());
+      return !fault_.empty();
+    });
+    if (interruption.signal() != 0)
+      return report_end(interruption, std::nullopt,
+                        fmt::format("{} of {}", taken_, counted(planned_, "picture")), exit_done);
+    if (!fault_.empty()) throw Error(fault_ + saved_so_far());
+    if (!options_.quiet)
+      fmt::print("{}: {}, {} x {} pixels\n", one_line(options_.output), counted(taken_, "picture"),
+                 size_.width, size_.height);
+    return exit_done;
+  }
+
+ private:
+  void take(const PageResult& result) {
+    has_begun_ = true;
+    const viewer::JsonValue* const kind = result.head.find("kind");
+    const std::string word = kind ? kind->text : "";
+    if (word == "picture") return write(result);
+    if (word == "end") has_ended_ = true;
+    if (word == "failure") {
+      const viewer::JsonValue* const message = result.head.find("message");
+      fault_ = message && !message->text.empty() ? message->text : "the page has failed";
+    }
+  }
+
+  void write(const PageResult& result) {
+    const viewer::JsonValue* const step = result.head.find("step");
+    viewer::replace_file(names_.of(step ? static_cast<std::uint64_t>(step->integer) : 0), result.content);
+    ++taken_;
+    progress_.update(taken_, fmt::format("picture {} of {}", taken_, planned_));
+  }
+
+  std::string saved_so_far() const {
+    return taken_ == 0 ? "" : fmt::format("; {} of {} are saved", taken_, counted(planned_, "picture"));
+  }
+
+  const RenderOptions& options_;
+  PictureNames names_;
+  Pixels size_;
+  std::uint64_t planned_, taken_ = 0;
+  Progress progress_;
+  bool has_begun_ = false, has_ended_ = false, has_left_ = false;
+  std::string fault_;
+};
+
+void check_frames(const RenderOptions& options, const viewer::SceneView& show, const PictureNames& names) {
+  if (!options.frames) return;
+  if (!names.has_number() && options.frames->count() > 1)
+    throw Error(
+        fmt::format("--output: {}: the pictures of several frames need different names; write %04d "
+                    "where the number of the frame shall be",
+                    options.output));
+  if (show.frames && options.frames->last >= show.frames->count())
+    throw Error(fmt::format("--frames: {} is no frame of {}, which has the frames 0 to {}",
+                            options.frames->last, options.inputs.front(), show.frames->count() - 1));
+}
+
+}  // namespace
+
+int run_render(const RenderOptions& options) {
+  check_viewer();
+  const std::string program = find_browser(options.browser);
+  const PictureNames names(options.output);
+  const Pixels size = size_in_pixels(options);
+  std::string page(viewer::embedded_page());
+  if (!options.view_file.empty())
+    page = viewer::page_with_json(page, "supple-view", viewer::read_view(options.view_file));
+  page = viewer::page_with_json(page, "supple-job", job_of(options, size));
+  Input input = read_view_input(options);
+  print_notes(input);
+  check_output_names({{"--output", names.of(0)}, {"--view", options.view_file}}, input.files);
+  apply(options, input);
+  viewer::SceneView show = build_scene_view(input, options);
+  check_frames(options, show, names);
+  for (const std::string& warning : viewer::warnings_of_meshes(show))
+    fmt::print(stderr, "supple: warning: {}\n", one_line(warning));
+  warn_of_missing_threads(options.scene.threads);
+  Run run(options, names, size);
+  return run.go(std::move(show), page, program);
+}
+
+}  // namespace supple::cli

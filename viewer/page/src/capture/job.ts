@@ -1,0 +1,43 @@
+/**
+ * Draws pictures for `supple render`. The page contains the job, draws without a window, and sends each picture to
+ * the program as a binary message (docs/protocol.md).
+ */
+import type { Client } from "../client";
+import type { Model } from "../model";
+import type { Background, SceneView } from "../view/scene_view";
+import { takeFrames } from "./frames";
+
+interface Job {
+  /** First, last, every n-th; null for the step of the view, or 0. */
+  frames: [number, number, number] | null;
+  width: number;
+  height: number;
+  dpi: number;
+  format: "png" | "svg";
+  background: Background;
+  theme: "light" | "dark";
+  legend: boolean;
+  scale_bar: boolean;
+}
+
+/** The job in this page; null in a page for people. */
+export function embeddedJob(): Job | null {
+  const text = document.getElementById("supple-job")?.textContent;
+  return text ? (JSON.parse(text) as Job) : null;
+}
+
+/** Call when the first frame is there. Sends all pictures, then the end or what went wrong. */
+export async function runJob(job: Job, step: number, model: Model, client: Client, view: SceneView): Promise<void> {
+  const [first, last, every] = job.frames ?? [step, step, 1];
+  const { width, height, dpi, format, background } = job;
+  const figure = { size: { width, height }, dpi, format, background, legend: job.legend, scaleBar: job.scale_bar };
+  try {
+    const plan = { first, count: Math.floor((last - first) / every) + 1, every, figure };
+    await takeFrames(model, client, view, plan, new AbortController().signal, (picture, at) => client.deliver({ kind: "picture", step: at.step }, picture));
+    await client.deliver({ kind: "end" });
+  } catch (error) {
+    await failJob(client, (error as Error).message);
+  }
+}
+
+export const failJob = (client: Client, message: string): Promise<void> => client.deliver({ kind: "failure", message: message.replace(/\.$/, "") });
