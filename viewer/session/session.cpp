@@ -18,6 +18,7 @@ void Session::Implementation::greet() {
   credit_ = 0;
   replies_.clear();
   layers_ = {};
+  field_.choose(nullptr, *stage_);
   deferred_.clear();
   if (SimulationSource* const simulation = stage_->simulation()) simulation->release();
   if (ProgramSource* const source = stage_->program()) source->program().set_page(true);
@@ -39,6 +40,7 @@ double Session::Implementation::advance(double seconds) {
     if (outcome.changed && stage_->simulation() != nullptr)
       packer_.add_step(source.step(), source.motion_seconds(), source.scene().result().stats);
     if (stage_->program() != nullptr) follow_program();
+    if (outcome.changed && stage_->is_open()) field_.see(*stage_);
   });
   if (outcome.failure) failure = Failure{*outcome.failure};
   if (failure) {
@@ -64,7 +66,9 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
     player_.set_watched(false);
     packer_.forget_positions();
     ++numbers_.generation;
-    pack_scene(*stage_, numbers_, replies_.json, message);
+    fields_ = offered_fields(scene());
+    field_.choose(find_field(fields_, layers_.field), *stage_);
+    pack_scene(*stage_, numbers_, fields_, replies_.json, message);
   } else if (owes_series_) {
     owes_series_ = false;
     pack_series(*scene().frames, message);
@@ -90,12 +94,16 @@ bool Session::Implementation::pack_frame(MessageWriter& message) {
   const FrameView frame{scene(),          stage_->source(),    layers_,
                         stage_->center(), numbers_.generation, player_.playing(),
                         player_.speed(),  player_.loop()};
-  const auto failure = failure_of([&] { packer_.pack(frame, message); });
+  const auto failure = failure_of([&] {
+    packer_.pack(frame, message);
+    field_.pack(*stage_, message);
+  });
   if (!failure) return true;
   replies_.id.reset();
   packer_.forget();
   const std::vector<std::string> dropped = layer_names(layers_);
   layers_ = {};
+  field_.choose(nullptr, *stage_);
   has_news_ = true;
   fail(failure->message, dropped.empty(), dropped);
   return false;

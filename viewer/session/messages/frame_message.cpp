@@ -397,6 +397,8 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.member("playing", frame.playing);
   json_.member("speed", frame.speed);
   json_.member("loop", frame.loop);
+  json_.key("field");
+  frame.layers.field.empty() ? json_.null() : json_.value(frame.layers.field);
   frame.source.add_to(json_, frame.center);
   json_.key("octree_levels");
   json_.begin_array();
