@@ -3,6 +3,8 @@
  * browser keeps it for each scene, so that it survives a reload and a restart of the program.
  */
 import { objectColour } from "./colours";
+import { MAPS } from "./fields/colour_maps";
+import type { FieldChoice } from "./fields/fields";
 import { LAYERS, type Layer, type Model, type NodeChoice } from "./model";
 import type { CameraRig, CameraState } from "./view/camera";
 
@@ -17,6 +19,7 @@ export interface ViewState {
   octree: { onlySelected: boolean; level: number };
   nodes: NodeChoice;
   marks: Partial<Marks>;
+  field: FieldChoice;
   /** By name. Objects of the same name look the same. */
   objects: Record<string, { visible: boolean; colour: string; opacity: number }>;
   tab: string;
@@ -29,7 +32,7 @@ const MOST_OBJECTS = 2000;
 export function viewOf(model: Model, rig: CameraRig, page: Pick<ViewState, "tab" | "panels">): ViewState {
   const objects = model.objects.slice(0, MOST_OBJECTS).filter((object) => !object.visible || object.opacity !== 1 || object.colour !== objectColour(object.index));
   return {
-    version: 1, camera: rig.state, layers: { ...model.layers }, octree: { ...model.octree }, nodes: { ...model.nodes },
+    version: 1, camera: rig.state, layers: { ...model.layers }, octree: { ...model.octree }, nodes: { ...model.nodes }, field: { ...model.field },
     marks: Object.fromEntries(MARKS.map((name) => [name, model[name]])) as Marks,
     objects: Object.fromEntries(objects.map(({ name, visible, colour, opacity }) => [name, { visible, colour, opacity }])),
     ...page,
@@ -57,9 +60,20 @@ export function readView(text: string | null): Partial<ViewState> | null {
 
 export const cameraOf = (view: Partial<ViewState>): CameraState | null => (isCamera(view.camera) ? view.camera : null);
 
+/** The parts of a choice that are valid. */
+function fieldOf(value: unknown): Partial<FieldChoice> {
+  if (!isRecord(value)) return {};
+  const { key, map, range, arrowLength } = value as unknown as FieldChoice;
+  const isRange = range === null || (Array.isArray(range) && range.length === 2 && range.every(isNumber) && range[0] < range[1]);
+  return {
+    ...((key === null || typeof key === "string") && { key }), ...(MAPS.includes(map) && { map }), ...(isRange && { range }), ...(isNumber(arrowLength) && arrowLength > 0 && { arrowLength }),
+  };
+}
+
 /** Applies everything but the camera and the panels. */
 export function showView(model: Model, view: Partial<ViewState>): void {
-  const { layers, octree, nodes, marks, objects } = view;
+  const { layers, octree, nodes, marks, objects, field } = view;
+  model.field = { ...model.field, ...fieldOf(field) };
   if (isRecord(layers)) for (const layer of LAYERS) if (typeof layers[layer] === "boolean") model.layers[layer] = layers[layer];
   if (isRecord(octree) && typeof octree.onlySelected === "boolean" && isNumber(octree.level)) model.octree = { onlySelected: octree.onlySelected, level: octree.level };
   if (isRecord(nodes) && isNumber(nodes.level)) {
