@@ -47,7 +47,8 @@ constexpr std::array built_in = std::to_array<BuiltIn>({
      "How far each vertex moved since the step before, divided by the time between; of a program, since its "
      "last step that the page was given",
      vertex, false, "", 0, &has_time},
-    {"velocity", "Velocity", "length/s", "The same as a vector: the mean velocity since then", vertex, true,
+    {"velocity", "Velocity", "length/s",
+     "The mean velocity of each vertex since the step before, or since that step of a program", vertex, true,
      "", 0, &has_time},
     {"displacement", "Displacement", "length",
      "From the vertex at the start to the vertex now; of a program, from where it was when the page got the "

@@ -125,8 +125,8 @@ export class Layers {
   readonly curveArrows = new Lines({ colour: MARKS.curve, size: 3.5, order: 6 });
   readonly curves = new Dots({ colour: MARKS.curve, order: 7 });
   readonly vertices = new Dots({ colour: MARKS.vertex, spacing: SPACING / 2, order: 6 });
-  readonly fieldArrows = new Lines({ colour: MARKS.vector, size: 2, arrow: true, spacing: SPACING, order: 7 });
-  readonly fieldDots = new Dots({ colour: "", colours: dotColours("viridis"), spacing: SPACING / 2, order: 8 });
+  readonly fieldArrows = new Lines({ colour: MARKS.vector, size: 1.5, arrow: true, spacing: 2 * SPACING, order: 7 });
+  readonly fieldDots = new Dots({ colour: "", colours: dotColours("viridis"), spacing: SPACING, order: 8 });
   private readonly marks = new Marks();
 
   constructor(private readonly model: Model) {
