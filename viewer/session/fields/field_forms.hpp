@@ -18,8 +18,8 @@ struct FieldForm {
   std::string unit;
   FieldElement element = FieldElement::vertex;
   bool is_vector = false;
-  /// Of a field of contacts: the section of frames that has the values. Each of its rows begins with the
-  /// place of the contact, and `column` has the value. Empty for fields of vertices and triangles.
+  /// The section of frames with the values of contacts. Each of its rows begins with the place of the
+  /// contact, and `column` has the value. Empty for fields of vertices and triangles.
   std::string section{};
   unsigned column = 0;
 

@@ -17,10 +17,10 @@ export const firstChoice = (): FieldChoice => ({ key: null, map: "viridis", rang
 
 export interface FieldData {
   form: FieldForm;
-  /** Of vertices or triangles, by object: the numbers, or the lengths of the vectors. */
+  /** The numbers of vertices or triangles by object, or the lengths of their vectors. */
   values: Map<number, Float32Array>;
   vectors: Map<number, Float32Array>;
-  /** Of contacts: rows of 8 numbers, which begin with the place. */
+  /** Rows of 8 numbers for contacts, which begin with the place. */
   rows: Float32Array;
   /** Of all finite values; not finite when there are none. */
   lowest: number;

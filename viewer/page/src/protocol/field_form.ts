@@ -8,7 +8,7 @@ export interface FieldForm {
   unit: string;
   element: "vertex" | "face" | "contact";
   vector: boolean;
-  /** Of contacts: the section of a frame with the values, and where they are in its rows. */
+  /** The section of a frame with the values of contacts, and where they are in its rows. */
   section?: string;
   column?: number;
 }
