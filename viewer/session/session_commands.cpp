@@ -156,10 +156,11 @@ void Session::Implementation::seek(Arguments& arguments) {
 }
 
 void Session::Implementation::layers(Arguments& arguments) {
-  const auto layers = read_layers(layers_, scene(), fields_, arguments);
+  const std::vector<FieldForm> fields = offered_fields(scene());
+  const auto layers = read_layers(layers_, scene(), fields, arguments);
   if (!layers) return;
   layers_ = *layers;
-  field_.choose(find_field(fields_, layers_.field), *stage_);
+  field_.choose(find_field(fields, layers_.field), *stage_);
   has_news_ = true;
 }
 

@@ -84,7 +84,7 @@ export function drawColourBar(context: CanvasRenderingContext2D, { x, y, width, 
 /** The bar over the view. */
 export class ColourBar {
   readonly canvas = h("canvas", { role: "img" });
-  readonly element = h("figure", { class: "colour-bar", hidden: true }, this.canvas);
+  readonly element = h("div", { class: "colour-bar", hidden: true }, this.canvas);
   private drawn = "";
 
   constructor(private readonly model: Model) {
