@@ -15,7 +15,9 @@
 #include <vector>
 
 #include "reports/csv_report.hpp"
+#include "session/fields/field_forms.hpp"
 #include "session/messages/sections.hpp"
+#include "session/program/attach_descriptions.hpp"
 #include "session/settings.hpp"
 #include "supple/format_descriptions.hpp"
 #include "supple/result_lists.hpp"
@@ -260,6 +262,17 @@ void sections_table() {
   });
 }
 
+void fields_table() {
+  table("protocol_fields", "| Key | Of each | Unit | Meaning |", [] {
+    for (const viewer::FieldForm& form : viewer::built_in_fields()) {
+      const std::string of =
+          form.section.empty() ? word_of(form.element) : fmt::format("contact, in `{}`", form.section);
+      fmt::print("| `{}` | {}{} | {} | {} |\n", form.key, of, form.is_vector ? ", a vector" : "", form.unit,
+                 form.doc);
+    }
+  });
+}
+
 template <class... Records>
 void record_table(const char* name) {
   table(name, "| Record | Key | Unit | Meaning |", [] {
@@ -324,7 +337,7 @@ void print_view_members() {
   fmt::print(
       "// `make docs` writes this file from viewer/view_file/view_members.hpp.\n\n"
       "export interface ViewMember {{\n  path: string;\n"
-      "  kind: \"number\" | \"whole\" | \"truth\" | \"word\" | \"colour\" | \"text\" | \"point\" | "
+      "  kind: \"number\" | \"whole\" | \"truth\" | \"word\" | \"colour\" | \"text\" | \"key\" | \"point\" | \"interval\" | "
       "\"objects\";\n"
       "  /** What a value must be, in words. */\n  range: string;\n"
       "  /** Of numbers; `above` excludes the lowest number. */\n  low: number;\n  high: number;\n  above: "
@@ -354,6 +367,7 @@ void print_description_tables() {
   lists_table();
   sections_table();
   view_table();
+  fields_table();
   statistics_tables();
   record_table<Manifold, ManifoldPoint>("json_manifolds");
   csv_table();

@@ -109,6 +109,11 @@ TEST(SteadyStateSession, NoAllocationsWithCollidingVertices) {
   expect_no_allocations(play(waves(), {R"({"do": "layers", "colliding_vertices": true})"}));
 }
 
+TEST(SteadyStateSession, NoAllocationsWithAField) {
+  expect_no_allocations(play(waves(), {R"({"do": "layers", "field": "velocity"})"}));
+  expect_no_allocations(play(waves(), {R"({"do": "layers", "field": "strain"})"}));
+}
+
 TEST(SteadyStateSession, NoAllocationsInFramesOfARecording) {
   for (const ContactKinds contacts : {ContactKinds::intersection, ContactKinds::continuous}) {
     SceneView show = waves();

@@ -129,6 +129,10 @@ Script nine() {
   script.command(R"({"do": "node_pairs", "id": 6, "a": 0, "b": 1})");
   script.command(R"({"do": "measure", "id": 7, "a": 0, "b": 1})");
   script.steps(8, 20);
+  for (const char* field : {"speed", "strain", "distance"}) {
+    script.command(std::string(R"({"do": "layers", "field": ")") + field + R"("})");
+    script.steps(2, 20);
+  }
   return script;
 }
 

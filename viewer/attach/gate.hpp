@@ -4,7 +4,9 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
+#include <string_view>
 #include <vector>
 
 #include "break_finder.hpp"
@@ -12,6 +14,7 @@
 #include "slowdown_budget.hpp"
 #include "supple/call_limits.hpp"
 #include "supple/viewer.hpp"
+#include "user_fields.hpp"
 
 namespace supple::viewer {
 
@@ -37,6 +40,7 @@ class Gate final : public Program {
 
   std::uint64_t frame_count() const;
   double seconds_in_steps() const;
+  UserFields& user_fields() { return fields_; }
 
   void request() override;
   const ProgramStep* enter() override;
@@ -50,6 +54,11 @@ class Gate final : public Program {
   std::vector<StepRow> take_rows() override;
   ProgramState state() const override;
   double time_step() const override { return time_step_; }
+  std::vector<UserField> fields() const override { return fields_.list(); }
+  std::shared_ptr<const std::vector<double>> field_values(std::string_view name,
+                                                          ObjectId object) const override {
+    return fields_.values(name, object);
+  }
 
  private:
   using Lock = std::unique_lock<std::mutex>;
@@ -62,6 +71,7 @@ class Gate final : public Program {
   const double time_step_;
   const bool waits_for_page_;
   const Surroundings surroundings_;
+  UserFields fields_;
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -5,7 +5,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -73,6 +75,7 @@ class View::Implementation {
 
   const std::shared_ptr<Gate>& gate() const { return gate_; }
   const std::string& url() const { return url_; }
+  const Scene& scene() const { return *scene_; }
   void wait(const CallLimits& limits) { gate_->wait(*scene_, limits); }
 
   void close() {
@@ -137,6 +140,16 @@ bool View::is_paused() const {
 }
 void View::set_breaks(const BreakOptions& breaks) {
   implementation_->gate()->set_breaks(breaks);
+}
+void View::set_field(ObjectId object, std::string_view name, std::span<const double> values,
+                     std::optional<FieldElement> element) {
+  implementation_->gate()->user_fields().set(implementation_->scene(), object, name, values, false, element);
+}
+void View::set_field(ObjectId object, std::string_view name, std::span<const Vec3d> values,
+                     std::optional<FieldElement> element) {
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  const std::span<const double> numbers(reinterpret_cast<const double*>(values.data()), 3 * values.size());
+  implementation_->gate()->user_fields().set(implementation_->scene(), object, name, numbers, true, element);
 }
 void View::wait(const CallLimits& limits) {
   implementation_->wait(limits);

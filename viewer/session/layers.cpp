@@ -45,6 +45,15 @@ void read_colliding_nodes(const JsonValue& nodes, const SceneView& scene, Layers
   if (objects) layers.colliding_nodes->objects = {(*objects)[0], (*objects)[1]};
 }
 
+std::string read_field(const JsonValue& field, const std::vector<FieldForm>& fields, Arguments& arguments) {
+  if (field.kind == JsonValue::Kind::null) return {};
+  if (field.kind == JsonValue::Kind::text && find_field(fields, field.text) != nullptr) return field.text;
+  std::string list = "null";
+  for (const FieldForm& form : fields) list += ", " + form.key;
+  arguments.must_be("field", "one of the fields of the scene: " + list);
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> layer_names(const Layers& layers) {
@@ -54,10 +63,12 @@ std::vector<std::string> layer_names(const Layers& layers) {
   if (layers.colliding_vertices) names.emplace_back("colliding_vertices");
   if (!layers.octree_objects.empty()) names.emplace_back("octree");
   if (layers.colliding_nodes) names.emplace_back("colliding_nodes");
+  if (!layers.field.empty()) names.emplace_back("field");
   return names;
 }
 
-std::optional<Layers> read_layers(Layers layers, const SceneView& scene, Arguments& arguments) {
+std::optional<Layers> read_layers(Layers layers, const SceneView& scene, const std::vector<FieldForm>& fields,
+                                  Arguments& arguments) {
   layers.candidates = arguments.boolean("candidates").value_or(layers.candidates);
   layers.scene_regions = arguments.boolean("scene_regions").value_or(layers.scene_regions);
   layers.colliding_vertices = arguments.boolean("colliding_vertices").value_or(layers.colliding_vertices);
@@ -69,6 +80,8 @@ std::optional<Layers> read_layers(Layers layers, const SceneView& scene, Argumen
     layers.colliding_nodes.reset();
     if (nodes->kind != JsonValue::Kind::null) read_colliding_nodes(*nodes, scene, layers, arguments);
   }
+  if (const JsonValue* const field = arguments.member("field"))
+    layers.field = read_field(*field, fields, arguments);
   return arguments.check() ? std::optional(std::move(layers)) : std::nullopt;
 }
 

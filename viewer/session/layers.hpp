@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "fields/field_forms.hpp"
 #include "scene_view.hpp"
 
 namespace supple::viewer {
@@ -27,13 +28,16 @@ struct Layers {
   std::vector<std::uint32_t> octree_objects{};  ///< objects whose octrees are sent, ascending
   std::optional<std::uint32_t> octree_level{};  ///< empty: the leaves
   std::optional<CollidingNodes> colliding_nodes{};
+  std::string field{};  ///< the key of a `FieldForm`; empty for none
 };
 
 /// The requested layers by their names in the protocol.
 std::vector<std::string> layer_names(const Layers& layers);
 
-/// The layers after the command `layers`, which changes those that it names; empty after an error.
-std::optional<Layers> read_layers(Layers layers, const SceneView& scene, Arguments& arguments);
+/// The layers after the command `layers`, which changes those that it names; empty after an error. `fields`
+/// are those that the scene offers.
+std::optional<Layers> read_layers(Layers layers, const SceneView& scene, const std::vector<FieldForm>& fields,
+                                  Arguments& arguments);
 
 /// Removes objects from `count` on.
 void keep_objects(Layers& layers, std::size_t count);

@@ -18,6 +18,7 @@ void Session::Implementation::greet() {
   credit_ = 0;
   replies_.clear();
   layers_ = {};
+  field_.choose(nullptr);
   deferred_.clear();
   if (SimulationSource* const simulation = stage_->simulation()) simulation->release();
   if (ProgramSource* const source = stage_->program()) source->program().set_page(true);
@@ -86,7 +87,9 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
     player_.set_watched(false);
     packer_.forget_positions();
     ++numbers_.generation;
-    pack_scene(*stage_, numbers_, replies_.json, message);
+    fields_ = offered_fields(scene());
+    field_.choose(find_field(fields_, layers_.field));
+    pack_scene(*stage_, numbers_, fields_, replies_.json, message);
   } else if (owes_series_) {
     owes_series_ = false;
     pack_series(*scene().frames, message);
@@ -114,12 +117,16 @@ bool Session::Implementation::pack_frame(MessageWriter& message) {
                   is_past_};
   frame.has_path = !is_past_ || stage_->past()->has_path();
   frame.is_recorded = stage_->recording() != nullptr;
-  const auto failure = failure_of([&] { packer_.pack(frame, message); });
+  const auto failure = failure_of([&] {
+    packer_.pack(frame, message);
+    field_.pack(*stage_, message);
+  });
   if (!failure) return true;
   replies_.id.reset();
   packer_.forget();
   const std::vector<std::string> dropped = layer_names(layers_);
   layers_ = {};
+  field_.choose(nullptr);
   has_news_ = true;
   fail(failure->message, dropped.empty(), dropped);
   return false;

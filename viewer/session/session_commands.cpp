@@ -169,9 +169,11 @@ void Session::Implementation::seek(Arguments& arguments) {
 }
 
 void Session::Implementation::layers(Arguments& arguments) {
-  const auto layers = read_layers(layers_, scene(), arguments);
+  const std::vector<FieldForm> fields = offered_fields(scene());
+  const auto layers = read_layers(layers_, scene(), fields, arguments);
   if (!layers) return;
   layers_ = *layers;
+  field_.choose(find_field(fields, layers_.field));
   has_news_ = true;
 }
 
@@ -215,11 +217,13 @@ void Session::Implementation::follow_program() {
       show_ = std::move(*changed);
       stage_ = make_stage(settings_);
       stage_->program()->advance();
+      field_.restart();
       keep_objects(layers_, scene().objects.size());
       owes_scene_ = true;
     }
     stage_->keep();
   }
+  owes_scene_ = owes_scene_ || offered_fields(scene()) != fields_;
   for (const JsonValue& text : std::exchange(deferred_, {})) obey(text);
 }
 
@@ -232,6 +236,7 @@ void Session::Implementation::restart(const Settings& settings) {
   keep_objects(layers_, scene().objects.size());
   packer_.restart();
   take_state();
+  field_.restart();
   ++numbers_.run;
   owes_scene_ = true;
 }
@@ -281,12 +286,15 @@ void Session::Implementation::read(Arguments& arguments) {
   const auto triangle = read_triangle(object, scene(), arguments);
   if (vertex && triangle) arguments.fail("give a vertex or a triangle, not both");
   if (!arguments.check()) return;
-  if (vertex)
+  if (vertex) {
     answer_read_vertex(stage_->source(), object, *vertex, replies_.json);
-  else if (triangle)
+    field_.answer(*stage_, FieldElement::vertex, object, *vertex, replies_.json);
+  } else if (triangle) {
     answer_read_triangle(scene(), stage_->source(), object, *triangle, replies_.json);
-  else
+    field_.answer(*stage_, FieldElement::face, object, *triangle, replies_.json);
+  } else {
     answer_read_object(scene(), stage_->source(), object, replies_.json);
+  }
 }
 
 void Session::Implementation::node_pairs(Arguments& arguments) {

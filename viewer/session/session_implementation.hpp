@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "fields/field_maker.hpp"
 #include "layers.hpp"
 #include "messages/frame_message.hpp"
 #include "messages/json_value.hpp"
@@ -112,6 +113,8 @@ class Session::Implementation {
   Replies replies_;
   std::vector<JsonValue> deferred_;  // commands that wait until the scene of the program can be read
   FramePacker packer_;
+  std::vector<FieldForm> fields_;  // that the last scene message offered
+  FieldMaker field_;
 };
 
 }  // namespace supple::viewer

@@ -65,6 +65,12 @@ bool is_valid(const JsonValue& value, const ViewMember& member) {
       return value.kind == Kind::text && is_colour(value.text);
     case ViewValue::text:
       return value.kind == Kind::text;
+    case ViewValue::key:
+      return value.kind == Kind::null || value.kind == Kind::text;
+    case ViewValue::interval:
+      return value.kind == Kind::null ||
+             (is_list_of(value, 2, [](const JsonValue& x) { return x.is_number(); }) &&
+              value.elements[0].number < value.elements[1].number);
     case ViewValue::point:
       return is_list_of(value, 3, [](const JsonValue& x) { return x.is_number(); });
     case ViewValue::objects:
@@ -125,6 +131,10 @@ std::string text_of(const ViewMember& member) {
       return "a colour such as #8ecae6";
     case ViewValue::text:
       return "a text";
+    case ViewValue::key:
+      return "null, or a text";
+    case ViewValue::interval:
+      return "null, or two numbers of which the second is larger";
     case ViewValue::point:
       return "three finite numbers";
     case ViewValue::objects:

@@ -12,16 +12,19 @@ import weakref
 from types import TracebackType
 from typing import Any
 
+from . import _arrays
 from ._core import Error, Stop
+from ._object import Object
 from ._scene import Scene
-from ._simulation import Simulation
+from ._simulation import SimulatedObject, Simulation
 
 
 class View:
     """The connection of a program to a page. `supple.attach` makes it; a `with` statement closes it."""
 
-    def __init__(self, core: Any) -> None:
+    def __init__(self, core: Any, shown: Scene | Simulation) -> None:
         self._core = core
+        self._shown = shown
 
     @property
     def url(self) -> str:
@@ -53,6 +56,20 @@ class View:
         `intersection`, `contacts_above`, `depth_above`, `not_finite`. `objects` are the names of those whose
         contacts begin; an empty name stands for any object."""
         self._core.set_breaks(breaks, objects)
+
+    def set_field(self, shown: Object | SimulatedObject, name: str, values: Any, *, of: str | None = None) -> None:
+        """Shows your own numbers as the field `name`, which the page can choose: an array (n,) with one for
+        each vertex of the object, (m,) with one for each triangle, or (n, 3) or (m, 3) with vectors, which
+        the page draws as arrows. Frames from the next `detect` on have them, until they are set again. NaN is
+        no value, and an empty array ends the field of the object. `of` is "vertex" or "face"; without it, the
+        length decides, and a length that fits both is that of vertices."""
+        owner = getattr(shown, "_scene", None) or getattr(shown, "_simulation", None)
+        if owner is not self._shown:
+            raise Error(f"set_field: {shown!r} is not an object of the scene that the page shows")
+        array = _arrays.as_numpy(values, name)
+        is_vector = array.ndim == 2
+        array = _arrays.doubles(array, f"the values of {name}", *((-1, 3) if is_vector else (-1,)))
+        (self._core.set_field_vectors if is_vector else self._core.set_field)(shown._id, name, array, of)
 
     def wait(self, *, stop: Stop | None = None) -> None:
         """Shows the last step until the page continues the program or the view is closed. Ctrl-C ends it."""
@@ -103,7 +120,7 @@ def attach(
         core = compiled.attach_simulation(shown._core, keywords, objects)
     else:
         raise Error(f"attach: {shown!r} is neither a Scene nor a Simulation")
-    view = View(core)
+    view = View(core, shown)
     _views.add(view)
     return view
 

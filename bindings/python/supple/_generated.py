@@ -821,6 +821,8 @@ CONTRACTS = {
         'time that frames have taken, without pauses',
     'viewer::View::set_breaks':
         'the program waits, or will in the next step',
+    'viewer::View::set_field':
+        "Shows the user's own numbers as the field `name`, which the page can choose: one for each vertex of an object, or one for each triangle. Frames from the next `detect` on have them, until they are set again. NaN is no value, and no numbers end the field of the object. Without an element, the count decides, and a count that fits both is that of vertices. All objects of a field have the same element. Copies the numbers, O(n). Any thread can call it while nothing adds or removes objects. Throws `Error` when the count fits neither vertices nor triangles of the object, or not the element, when the name is empty or not UTF-8, and when other objects have this field with another element, or as vectors.",
     'viewer::View::step_count':
         'steps since `attach`',
     'viewer::View::url':

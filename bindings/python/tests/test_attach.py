@@ -13,6 +13,7 @@ import threading
 import urllib.parse
 from typing import ClassVar
 
+import numpy as np
 import pytest
 from conftest import ROOT
 
@@ -170,6 +171,49 @@ def test_pair_filter_of_python_is_asked_while_the_program_waits(attached):
     page.close()
     program.join(60)
     assert not program.is_alive()
+
+
+def test_page_shows_fields_of_the_program(attached):
+    scene, ball, view = attached
+    numbers = np.arange(ball.vertex_count) / 3
+    view.set_field(ball, "heat", numbers)
+    view.set_field(ball, "stress", np.arange(ball.triangle_count, dtype=np.float32))
+    view.set_field(ball, "wind", numbers[:, None] * [0, 1, -2])
+    page = Page(view.url)
+    fields = {each["label"]: each for each in page.until(lambda kind, _: kind == SCENE)["fields"]}
+    assert {name: (fields[name]["element"], fields[name]["vector"]) for name in ("heat", "stress", "wind")} == {
+        "heat": ("vertex", False),
+        "stress": ("face", False),
+        "wind": ("vertex", True),
+    }
+    page.ask(do="pause")
+    program = in_thread(fall, scene, ball, 1)
+    page.until(lambda kind, _: kind == FRAME)
+
+    def read(name, **element):
+        page.ask(do="layers", field=fields[name]["key"])
+        return page.ask(do="read", object=1, **element)["field"][name]
+
+    assert read("heat", vertex=4) == 4 / 3
+    assert read("stress", triangle=7) == 7
+    assert read("wind", vertex=3) == [0, 1, -2]
+    page.close()
+    program.join(60)
+
+
+def test_fields_that_do_not_fit_are_refused(attached):
+    _, ball, view = attached
+    counts = f"{ball.vertex_count} vertices and {ball.triangle_count} triangles"
+    with pytest.raises(supple.Error, match=f"heat of ball has 5 values, but the object has {counts}"):
+        view.set_field(ball, "heat", np.zeros(5))
+    with pytest.raises(supple.Error, match=f"has {ball.vertex_count} values, but the object has"):
+        view.set_field(ball, "heat", np.zeros(ball.vertex_count), of="face")
+    with pytest.raises(supple.Error, match="of is edge; it must be one of vertex, face"):
+        view.set_field(ball, "heat", np.zeros(ball.vertex_count), of="edge")
+    with pytest.raises(supple.Error, match=r"the values of heat have the shape \(7, 2\); it must be \(n, 3\)"):
+        view.set_field(ball, "heat", np.zeros((7, 2)))
+    with pytest.raises(supple.Error, match="is not an object of the scene"):
+        view.set_field(falling_ball()[1], "heat", np.zeros(5))
 
 
 def test_simulation():

@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "supple/call_limits.hpp"
 #include "supple/scene.hpp"
 #include "supple/simulation.hpp"
+#include "supple/types.hpp"
 
 namespace supple::viewer {
 
@@ -49,6 +52,9 @@ struct AttachOptions {
   BreakOptions breaks{};
 };
 
+/// What has the values of a field.
+enum class FieldElement : std::uint8_t { vertex, face };
+
 /// The connection of a program to a page. Its destructor closes it.
 class View {
  public:
@@ -68,6 +74,18 @@ class View {
   bool is_paused() const;             ///< the program waits, or will in the next step
   /// Throws `Error` when the last step did not detect the kind of contacts that an event needs.
   void set_breaks(const BreakOptions& breaks);
+  /// Shows the user's own numbers as the field `name`, which the page can choose: one for each vertex of an
+  /// object, or one for each triangle. Frames from the next `detect` on have them, until they are set again.
+  /// NaN is no value, and no numbers end the field of the object. Without an element, the count decides, and
+  /// a count that fits both is that of vertices. All objects of a field have the same element. Copies the
+  /// numbers, O(n). Any thread can call it while nothing adds or removes objects. Throws `Error` when the
+  /// count fits neither vertices nor triangles of the object, or not the element, when the name is empty or
+  /// not UTF-8, and when other objects have this field with another element, or as vectors.
+  void set_field(ObjectId object, std::string_view name, std::span<const double> values,
+                 std::optional<FieldElement> element = {});
+  /// The same for vectors, which the page draws as arrows.
+  void set_field(ObjectId object, std::string_view name, std::span<const Vec3d> values,
+                 std::optional<FieldElement> element = {});
   /// Shows the last step until the page continues the program, the view is closed, or a stop is requested.
   /// The scene must exist, and must not have been moved.
   void wait(const CallLimits& limits = {});

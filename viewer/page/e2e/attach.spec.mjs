@@ -90,6 +90,26 @@ async function answersInAPause(stage) {
   await until(page, () => supple.model.frame.octreeBoxes.size > 0);
 }
 
+/** The example gives each vertex of the ball its height. */
+async function showsNumbersOfTheProgram(stage) {
+  const page = await open(stage, await start(stage));
+  await page.getByRole("button", { name: "Pause" }).click();
+  await isPaused(page);
+  await page.getByRole("combobox", { name: "Field", exact: true }).selectOption({ label: "height" });
+  await until(page, () => supple.model.frame.fieldValues.has(1));
+  const { heights, places, objects } = await page.evaluate(() => {
+    const { positions } = supple.model.objects[1];
+    const heights = [...supple.model.frame.fieldValues.get(1)];
+    const places = heights.map((_, i) => positions[3 * i + 1] + supple.model.scene.center[1]);
+    return { heights, places, objects: [...supple.model.frame.fieldValues.keys()] };
+  });
+  assert.deepEqual(objects, [1], "the other objects have no heights");
+  heights.forEach((height, i) => assert.ok(Math.abs(height - places[i]) < 1e-5, `vertex ${i}: ${height} instead of ${places[i]}`));
+  const label = await page.getByRole("img", { name: /^Colour bar: height from/ }).getAttribute("aria-label");
+  const [low, high] = /from (\S+) to (\S+), viridis\. Without a value: the object’s colour/.exec(label).slice(1).map(Number);
+  assert.ok(Math.abs(low - Math.min(...heights)) < 0.01 && Math.abs(high - Math.max(...heights)) < 0.01, label);
+}
+
 async function breaksOnAContact(stage) {
   const page = await open(stage, await start(stage));
   const before = await camera(page);
@@ -192,6 +212,7 @@ export const tests = [
   ["pauses, steps and continues a program", pausesAndSteps],
   ["has the statistics of steps without a frame", showsAllStepsInThePlots],
   ["answers questions in a pause", answersInAPause],
+  ["shows numbers of the program", showsNumbersOfTheProgram],
   ["breaks on the contact of two named objects", breaksOnAContact],
   ["breaks on numbers, and refuses wrong ones", breaksOnNumbers],
   ["a program goes on when its page is closed", goesOnWithoutThePage],

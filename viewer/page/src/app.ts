@@ -1,5 +1,6 @@
 /** Assembles the page. */
 import { Client, type Status } from "./client";
+import { ColourBar } from "./fields/colour_bar";
 import { Film } from "./capture/film";
 import { FramesRun } from "./capture/frames";
 import { embeddedJob, failJob, runJob } from "./capture/job";
@@ -39,8 +40,9 @@ const THEME = "supple-theme";
 const VIEW = "supple-view ";
 
 /** The text for a failure of the session: its message, and the layers that it switched off. */
-function sayFailure({ text, layers }: { text: string; layers: Layer[] }): string {
+function sayFailure({ text, layers }: { text: string; layers: (Layer | "field")[] }): string {
   const labels = LAYER_ROWS.filter(({ layer }) => layers.includes(layer)).map(({ label }) => label);
+  if (layers.includes("field")) labels.push("Field");
   return labels.length > 0 ? `${text}. Switched off: ${labels.join(", ")}.` : text;
 }
 
@@ -62,6 +64,7 @@ export class App {
   private scenePanel!: ScenePanel;
   private plots!: Plots;
   private framesDialog!: FramesDialog;
+  private readonly colourBar = new ColourBar(this.model);
   private readonly film_ = new Film();
   private readonly canvas = h("canvas", { class: "view", tabindex: 0, role: "img", "aria-label": "3D view" });
   private readonly title = h("span", { class: "title" });
@@ -87,7 +90,7 @@ export class App {
 
   start(): void {
     this.applyTheme(this.job?.theme ?? localStore(THEME));
-    this.body.append(this.canvas, this.card.element, this.notices.element);
+    this.body.append(this.canvas, this.colourBar.element, this.card.element, this.notices.element);
     try {
       this.view = new SceneView(this.canvas, this.model);
     } catch (error) {
@@ -394,6 +397,7 @@ export class App {
   private paint(): void {
     this.view.setColours(colourOf("--ground"), colourOf("--ink"));
     this.plots.rebuild();
+    this.colourBar.update();
   }
 
   /** For the end-to-end tests only. */

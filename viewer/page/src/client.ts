@@ -15,7 +15,7 @@ interface ClientEvents {
   /** One line about a request of the user. */
   notice: string;
   /** A failure that answers no request, and the layers that it switches off. */
-  failure: { text: string; layers: Layer[] };
+  failure: { text: string; layers: (Layer | "field")[] };
 }
 
 /** Frames that may be in transit: one that is drawn, and the next. */

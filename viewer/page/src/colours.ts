@@ -15,7 +15,7 @@ export const objectColour = (index: number): string => OBJECT_COLOURS[index % OB
 
 /** Colours of marks, the same in both themes. A light halo separates them from a dark ground. */
 export const MARKS = {
-  contact: "#c1121f", depth: "#7b1fa2", normal: "#0b3d91", curve: "#00552b", pair: "#0b5d4e", candidate: "#1d4ed8", vertex: "#7b1fa2", selection: "#0b3d91",
+  contact: "#c1121f", depth: "#7b1fa2", normal: "#0b3d91", curve: "#00552b", pair: "#0b5d4e", candidate: "#1d4ed8", vertex: "#7b1fa2", vector: "#1b1b1b", selection: "#0b3d91",
 } as const;
 export const HALO = "#ffffff";
 

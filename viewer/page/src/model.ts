@@ -2,6 +2,7 @@
 import { objectColour } from "./colours";
 import { sidesOf, type ContactKey } from "./contacts";
 import { Emitter } from "./emitter";
+import { firstChoice, type FieldChoice } from "./fields/fields";
 import { EVENT_KINDS, type EventKind, type FrameMessage, type SceneMessage, type SceneObject, type SceneText, type SeriesMessage } from "./protocol/messages";
 
 export interface ObjectState {
@@ -203,6 +204,7 @@ export class Model extends Emitter<ModelEvents> {
   normalLength = 24;  // in CSS pixels
   /** Part of the names of objects: the list of contacts has only objects with it. */
   filter = "";
+  field = firstChoice();
 
   tool: Tool = "select";
   selection: Selection | null = null;
@@ -369,13 +371,27 @@ export class Model extends Emitter<ModelEvents> {
     this.setLayer("nodes", true);
   }
 
+  setField(choice: Partial<FieldChoice>): void {
+    const isOther = choice.key !== undefined && choice.key !== this.field.key;
+    this.field = { ...this.field, ...choice };
+    if (isOther) this.emit("request", null);
+    this.emit("display", null);
+  }
+
   /**
    * Switches off layers that the session can no longer compute, by their names in the protocol; returns
    * those that were on. Then requests the others again, because a request may have been in transit.
    */
-  dropLayers(names: string[]): Layer[] {
-    const dropped = names.flatMap((name) => MADE_BY_SESSION[name] ?? []).filter((layer) => this.layers[layer]);
-    for (const layer of dropped) this.layers[layer] = false;
+  dropLayers(names: string[]): (Layer | "field")[] {
+    const dropped: (Layer | "field")[] = [];
+    for (const layer of names.flatMap((name) => MADE_BY_SESSION[name] ?? []).filter((layer) => this.layers[layer])) {
+      this.layers[layer] = false;
+      dropped.push(layer);
+    }
+    if (names.includes("field") && this.field.key !== null) {
+      this.field.key = null;
+      dropped.push("field");
+    }
     this.emit("request", null);
     this.emit("display", null);
     return dropped;
@@ -394,6 +410,7 @@ export class Model extends Emitter<ModelEvents> {
       colliding_vertices: this.layers.vertices,
       colliding_nodes: this.layers.nodes ? { level: this.nodes.level, ...(this.nodes.objects && { objects: this.nodes.objects }) } : null,
       octree: this.layers.octree ? { objects, level: this.octree.level } : null,
+      field: this.scene?.fields.some(({ key }) => key === this.field.key) ? this.field.key : null,
     };
   }
 }

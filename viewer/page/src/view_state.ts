@@ -4,6 +4,7 @@
  * `protocol/view_members.ts` has the ranges of all members; docs/view_file.md describes them.
  */
 import { objectColour } from "./colours";
+import type { MapName } from "./fields/colour_maps";
 import { LAYERS, type Layer, type Model, type NodeChoice } from "./model";
 import type { CameraRig, CameraState } from "./view/camera";
 
@@ -23,6 +24,7 @@ export interface ViewState {
   octree: { only_selected: boolean; level: number };
   nodes: NodeChoice;
   marks: Partial<Marks>;
+  field: { key?: string | null; map?: MapName; range?: [number, number] | null; arrow_length?: number };
   /** By name. Objects of the same name look the same. */
   objects: Record<string, Partial<ObjectLook>>;
   filter: string;
@@ -44,6 +46,7 @@ export function viewOf(model: Model, rig: CameraRig, page: Pick<ViewState, "tab"
   return {
     version: 1, camera: rig.state, layers: { ...model.layers },
     octree: { only_selected: model.octree.onlySelected, level: model.octree.level }, nodes: { ...model.nodes },
+    field: { key: model.field.key, map: model.field.map, range: model.field.range, arrow_length: model.field.arrowLength },
     marks: Object.fromEntries(Object.entries(MARKS).map(([name, member]) => [name, model[member]])) as Marks,
     objects: Object.fromEntries(objects.map(({ name, visible, colour, opacity }) => [name, { visible, colour, opacity }])),
     filter: model.filter, ...page,
@@ -52,7 +55,8 @@ export function viewOf(model: Model, rig: CameraRig, page: Pick<ViewState, "tab"
 
 /** Applies a checked view, except its camera, step and panels. Members that are missing keep their value. */
 export function showView(model: Model, view: Partial<ViewState>): void {
-  const { layers, octree, nodes, marks, objects, filter } = view;
+  const { layers, octree, nodes, marks, field, objects, filter } = view;
+  if (field) model.field = { key: field.key === undefined ? model.field.key : field.key, map: field.map ?? model.field.map, range: field.range === undefined ? model.field.range : field.range, arrowLength: field.arrow_length ?? model.field.arrowLength };
   for (const layer of LAYERS) model.layers[layer] = layers?.[layer] ?? model.layers[layer];
   model.octree = { onlySelected: octree?.only_selected ?? model.octree.onlySelected, level: octree?.level ?? model.octree.level };
   if (nodes) {

@@ -48,6 +48,12 @@ export const SCENE = {
     contact: ["point", "segment", "polygon"], certainty: ["certain", "within_tolerance"], curve: ["closed", "open", "branched"],
     impact: [["vertex", "face"], ["face", "vertex"], ["edge", "edge"], ["vertex", "edge"], ["edge", "vertex"], ["vertex", "vertex"]],
   },
+  fields: [
+    { key: "speed", label: "Speed", doc: "How fast", unit: "length/s", element: "vertex", vector: false },
+    { key: "strain", label: "Strain", doc: "", unit: "", element: "face", vector: false },
+    { key: "user:wind", label: "wind", doc: "", unit: "", element: "vertex", vector: true },
+    { key: "gap", label: "Gap", doc: "", unit: "length", element: "contact", vector: false, section: "proximity_points", column: 3 },
+  ],
   can: ["play", "reset", "grab", "set"], statistics: ["total_seconds", "contacts"],
   series: ["time", "contacts"], warnings: [],
 };

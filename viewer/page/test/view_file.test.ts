@@ -9,7 +9,7 @@ const VIEW: ViewState = {
   version: 1, camera: { position: [1, 2, 3], target: [0, 0, 0.5], zoom: 1.5, orthographic: true },
   layers: { wireframe: true }, octree: { only_selected: false, level: -1 }, nodes: { objects: [0, 1], level: -2 },
   marks: { slice: "x", slice_at: 0.25, up: "z" }, objects: { "a.obj": { visible: false, colour: "#8ECAE6", opacity: 0 } },
-  filter: "a", tab: "Plots", panels: false,
+  field: { key: "speed", map: "magma", range: [0, 2], arrow_length: 50 }, filter: "a", tab: "Plots", panels: false,
 };
 const refuses = (view: unknown, sentence: RegExp) => assert.throws(() => parseView(typeof view === "string" ? view : JSON.stringify(view)), sentence);
 
@@ -27,6 +27,9 @@ test("a malformed view names the member and what it must be", () => {
   refuses({ version: 1, cameras: {} }, /cameras is unknown/);
   refuses({ version: 1, camera: [] }, /camera is not an object/);
   refuses({ version: 1, camera: { zoom: 0 } }, /camera\.zoom is not a finite number above 0/);
+  refuses({ version: 1, field: { range: [2, 1] } }, /field\.range is not null, or two numbers/);
+  refuses({ version: 1, field: { map: "jet" } }, /field\.map is not one of viridis/);
+  refuses({ version: 1, field: { key: 3 } }, /field\.key is not null, or a text/);
   refuses({ version: 1, camera: { position: [1, 2] } }, /camera\.position is not three finite numbers/);
   refuses({ version: 1, layers: { surfaces: true } }, /layers\.surfaces is unknown/);
   refuses({ version: 1, layers: { surface: 1 } }, /layers\.surface is not true or false/);

@@ -25,6 +25,7 @@ class History final : public Frames {
   void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override;
   const Series& series() const override { return series_; }
   std::uint64_t step(std::uint64_t frame) const override { return at(frame).number; }
+  double time(std::uint64_t frame) const { return series_.values[static_cast<std::size_t>(frame)]; }
   /// False when steps between the two are missing.
   bool follows(std::uint64_t frame) const override { return frame > 0 && step(frame) == step(frame - 1) + 1; }
   std::uint64_t frame_of(std::uint64_t step) const override;

@@ -416,6 +416,8 @@ void FramePacker::add_text(const FrameView& frame) {
   add_numbers("section", frame.section);
   add_numbers("range", frame.range);
   json_.member("past", frame.is_past);
+  json_.key("field");
+  frame.layers.field.empty() ? json_.null() : json_.value(frame.layers.field);
   frame.source.add_to(json_, frame.center);
   json_.key("octree_levels");
   json_.begin_array();

@@ -50,6 +50,8 @@ enum class Tag : std::uint32_t {
   curves = 58,
   curve_points = 59,
   enclosed_vertices = 60,
+  field_values = 61,
+  field_vectors = 62,
   series = 64,
   series_contact_begin = 65,
   series_contact_end = 66,

@@ -250,7 +250,8 @@ void add_events(Tag begin, Tag end, const Series::Events& events, MessageWriter&
 
 }  // namespace
 
-void pack_scene(Stage& stage, SceneNumbers numbers, JsonText& json, MessageWriter& message) {
+void pack_scene(Stage& stage, SceneNumbers numbers, const std::vector<FieldForm>& fields, JsonText& json,
+                MessageWriter& message) {
   const SceneView& show = stage.show();
   json.clear();
   json.begin_object();
@@ -264,6 +265,7 @@ void pack_scene(Stage& stage, SceneNumbers numbers, JsonText& json, MessageWrite
   add_options(stage, json);
   add_settings(stage, json);
   add_kinds(json);
+  write_fields(fields, json);
   add_column_names(stage, json);
   add_warnings(stage, json);
   json.end_object();

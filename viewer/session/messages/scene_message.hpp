@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "fields/field_forms.hpp"
 #include "messages/json_text.hpp"
 #include "messages/message.hpp"
 #include "sources/stage.hpp"
@@ -13,8 +15,9 @@ struct SceneNumbers {
   std::uint64_t run = 1;         ///< counts restarts: steps of the same run follow each other
 };
 
-/// Writes the message that describes the scene: objects, topology and settings.
-void pack_scene(Stage& stage, SceneNumbers numbers, JsonText& json, MessageWriter& message);
+/// Writes the message that describes the scene: objects, topology, settings and fields.
+void pack_scene(Stage& stage, SceneNumbers numbers, const std::vector<FieldForm>& fields, JsonText& json,
+                MessageWriter& message);
 /// Writes the time series of a recording.
 void pack_series(const Frames& frames, MessageWriter& message);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +9,9 @@
 #include "supple/viewer.hpp"
 
 namespace supple {
+
+template <>
+inline constexpr std::array words<viewer::FieldElement>{"vertex", "face"};
 
 /// Without the names of objects, which belong to `contact_begin`.
 template <>

@@ -3,8 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "supple/scene.hpp"
@@ -35,6 +37,15 @@ struct StepRow {
   std::uint64_t step = 0;
   StepStats stats{};
   Events contacts{}, volumes{};
+};
+
+/// A field of the user; see `View::set_field`.
+struct UserField {
+  std::string name{};
+  FieldElement element = FieldElement::vertex;
+  bool is_vector = false;
+
+  bool operator==(const UserField&) const = default;
 };
 
 /// What a session must know between two steps.
@@ -76,6 +87,11 @@ class Program {
   /// The steps since the last call, the last ones if they are very many.
   virtual std::vector<StepRow> take_rows() = 0;
   virtual double time_step() const = 0;
+
+  virtual std::vector<UserField> fields() const = 0;
+  /// One or three numbers for each element of the object; null when it has none.
+  virtual std::shared_ptr<const std::vector<double>> field_values(std::string_view name,
+                                                                  ObjectId object) const = 0;
 };
 
 }  // namespace supple::viewer

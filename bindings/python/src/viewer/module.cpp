@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -24,6 +26,7 @@ namespace {
 
 using viewer::AttachOptions;
 using viewer::BreakOptions;
+using viewer::FieldElement;
 using viewer::View;
 using ObjectNames = std::array<std::string, 2>;
 
@@ -52,6 +55,15 @@ class ViewCore {
   void close() {
     const WithoutGil without_gil;
     view_->close();
+  }
+  template <class Value>
+  void set_field(ObjectId object, const std::string& name, std::span<const Value> values,
+                 const std::optional<std::string>& of) {
+    std::optional<FieldElement> element;
+    if (of && !(element = value_of_word<FieldElement>(*of)))
+      throw Error("set_field: of is " + *of + "; it must be one of " + list_of_words<FieldElement>());
+    const CallGuard::Together together(guard_);
+    view_->set_field(object, name, values, element);
   }
   void wait(Stop* stop) {
     const CallGuard::Alone alone(guard_);
@@ -98,6 +110,18 @@ NB_MODULE(_viewer, module) {
              breaks.objects = std::move(objects);
              core.view().set_breaks(breaks);
            })
+      .def(
+          "set_field",
+          [](ViewCore& core, ObjectId object, const std::string& name, const List<double>& values,
+             const std::optional<std::string>& of) { core.set_field(object, name, span_of(values), of); },
+          nb::arg(), nb::arg(), nb::arg(), nb::arg().none())
+      .def(
+          "set_field_vectors",
+          [](ViewCore& core, ObjectId object, const std::string& name, const Matrix<double, 3>& values,
+             const std::optional<std::string>& of) {
+            core.set_field(object, name, rows_of<Vec3d>(values), of);
+          },
+          nb::arg(), nb::arg(), nb::arg(), nb::arg().none())
       .def("wait", &ViewCore::wait, nb::arg().none())
       .def("close", &ViewCore::close);
   module.def("attach_scene", [](SceneCore& core, const nb::dict& keywords, ObjectNames objects) {

@@ -1,5 +1,6 @@
 /** The objects of the scene and the layers drawn over them. */
 import { GAPS, levelColour, LEVELS, MARKS } from "../colours";
+import { FieldPanel } from "../fields/field_panel";
 import type { Layer, Model } from "../model";
 import type { FrameMessage } from "../protocol/messages";
 import { h, readable } from "./dom";
@@ -81,6 +82,7 @@ export class ScenePanel {
       { class: "panel left", "aria-label": "Scene" },
       h("section", {}, new TouchLine(model).element),
       new ObjectList(model, frameObject).element,
+      new FieldPanel(model).element,
       h("section", {}, h("h2", {}, "Layers"), this.view.element, this.list, this.more, this.octreeOptions(), this.legend, this.omitted),
     );
     this.makeRows();

@@ -3,6 +3,7 @@
  * and returns typed arrays that view the message; nothing is copied.
  */
 
+import { faultOfField, isFieldForm, type FieldForm } from "./field_form";
 import { FORMS, KINDS, type Form } from "./sections";
 
 export const NONE = 0xffffffff;
@@ -85,6 +86,8 @@ export interface SceneText {
   /** What the command `set` takes. The scene has the value of each, by its key. */
   settings: Setting[];
   kinds: Kinds;
+  /** What the command `layers` takes as field. */
+  fields: FieldForm[];
   can: string[];
   statistics: string[];
   series: string[];
@@ -109,6 +112,8 @@ export interface FrameText {
   range: [number, number];
   /** A kept step of a simulation or a program, not the newest. */
   past: boolean;
+  /** The key of the field whose values the frame has. */
+  field: string | null;
   octree_levels: (number | null)[];
   omitted: Record<string, number>;
   /** Kinds of contacts for which there was nothing to test, and why. */
@@ -179,6 +184,9 @@ export interface SceneCounts {
   statistics: number;
   series: number;
   kinds: Kinds;
+  fields: FieldForm[];
+  /** Triangles without the edges and points of no triangle. */
+  faces: number[];
 }
 
 /** The elements of an object that the session numbers: triangles, then edges and points of no triangle. */
@@ -194,6 +202,8 @@ export function countsOf(message: SceneMessage): SceneCounts {
     statistics: scene.statistics.length,
     series: scene.series.length,
     kinds: scene.kinds,
+    fields: scene.fields,
+    faces: scene.objects.map((object) => object.triangles),
   };
 }
 
@@ -315,6 +325,7 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(isText(s.seed), "seed");
   need(Array.isArray(s.settings) && s.settings.every(isSetting), "settings");
   need(isKinds(s.kinds), "kinds");
+  need(Array.isArray(s.fields) && s.fields.every(isFieldForm), "fields");
   for (const name of ["can", "statistics", "series", "warnings"] as const) need(isTexts(s[name]), name);
   need(Array.isArray(s.objects), "objects");
   for (const object of s.objects as unknown[]) {
@@ -354,6 +365,8 @@ function frameText(json: Record<string, unknown>): FrameText {
   need(isNumber(f.time), "time");
   need(typeof f.playing === "boolean", "playing");
   need(isNumber(f.speed), "speed");
+  f.field ??= null;
+  need(f.field === null || isText(f.field), "field");
   f.octree_levels ??= [];
   f.section ??= null;
   f.range ??= [f.step, f.step];
@@ -452,6 +465,8 @@ function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
   checkIds("penetrations", frame.penetrations, 4, [0, 0], scene.vertices);
   if (frame.penetrationPoints.length !== 2 * frame.penetrations.length) fail("the numbers of penetrations and of their points differ");
   checkCurves(frame, scene);
+  const fault = faultOfField(text.field, frame.fieldValues, frame.fieldVectors, scene);
+  if (fault) fail(fault);
   if (scene.statistics === 0 ? steps.length !== 0 : steps.length % scene.statistics !== 0) fail("its statistics are not those of the scene");
   return frame;
 }
@@ -478,6 +493,7 @@ function readFailure(sections: Sections): FailureMessage {
 
 const NO_SCENE: SceneCounts = {
   generation: -1, vertices: [], triangles: [], statistics: 0, series: 0, kinds: { contact: [], certainty: [], curve: [], impact: [] },
+  fields: [], faces: [],
 };
 
 /**

@@ -1,6 +1,7 @@
 /** Layers over the surfaces, filled from the newest frame while switched on. */
 import * as THREE from "three";
 import { GAPS, gapLevel, MARKS } from "../colours";
+import { dotColours, fillArrows, fillDots } from "../fields/marks";
 import { boundsOf, type Model, type ObjectState } from "../model";
 import type { FrameMessage } from "../protocol/messages";
 import { Dots, Lines, type Projection } from "./marks";
@@ -153,6 +154,8 @@ export class Layers {
   readonly curveArrows = new Lines({ colour: MARKS.curve, size: 3.5, order: 6 });
   readonly curves = new Dots({ colour: MARKS.curve, order: 7 });
   readonly vertices = new Dots({ colour: MARKS.vertex, spacing: SPACING / 2, order: 6 });
+  readonly fieldArrows = new Lines({ colour: MARKS.vector, size: 1.5, arrow: true, spacing: 2 * SPACING, order: 7 });
+  readonly fieldDots = new Dots({ colour: "", colours: dotColours("viridis"), spacing: SPACING, order: 8 });
   private readonly marks = new Marks();
 
   constructor(private readonly model: Model) {
@@ -166,8 +169,8 @@ export class Layers {
   }
 
   private get sized() {
-    const { pairs, candidates, points, normals, segments, gapLines, proximity, depths, depthPoints, curveArrows, curves, vertices } = this;
-    return { pairs, candidates, points, normals, segments, gapLines, proximity, depths, depthPoints, curveArrows, curves, vertices };
+    const { pairs, candidates, points, normals, segments, gapLines, proximity, depths, depthPoints, curveArrows, curves, vertices, fieldArrows, fieldDots } = this;
+    return { pairs, candidates, points, normals, segments, gapLines, proximity, depths, depthPoints, curveArrows, curves, vertices, fieldArrows, fieldDots };
   }
 
   /** The number of elements of each layer, also of those that are thinned out. */
@@ -200,6 +203,8 @@ export class Layers {
     this.fillDepths(layers.depths);
     this.fillCurves(layers.curves);
     this.fillVertices(layers.vertices);
+    fillArrows(this.fieldArrows, this.model);
+    fillDots(this.fieldDots, this.model);
   }
 
   private shown(object: number): boolean {

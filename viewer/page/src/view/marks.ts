@@ -17,6 +17,8 @@ interface Style {
   order?: number;
   /** Marks closer than this on the screen, in CSS pixels, are thinned out. 0 draws all. */
   spacing?: number;
+  /** Lines end in the head of an arrow. */
+  arrow?: boolean;
   /** Elements have an additional number: the index of their colour. */
   colours?: readonly string[];
 }
@@ -104,6 +106,11 @@ abstract class Marks {
     this.uniforms.colours.value[0]!.set(colour);
   }
 
+  /** Replaces the colours that elements choose from; there must be as many as before. */
+  set colours(colours: string[]) {
+    colours.forEach((colour, i) => this.uniforms.colours.value[i]!.set(colour));
+  }
+
   set size(pixels: number) {
     this.uniforms.size.value = pixels;
   }
@@ -162,8 +169,9 @@ export class Dots extends Marks {
 export class Lines extends Marks {
   constructor(style: Style) {
     const geometry = new THREE.InstancedBufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    // The third number is 1 at the sides of a head and 2 at its tip.
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0, ...(style.arrow ? [1, -1, 1, 1, 1, 1, 1, 0, 2] : [])], 3));
+    geometry.setIndex([0, 1, 2, 0, 2, 3, ...(style.arrow ? [4, 5, 6] : [])]);
     super(style, geometry, style.colours ? 7 : 6, { start: [3, 0], finish: [3, 3] }, true);
     this.addPasses(
       (shared, material) => new THREE.Mesh(shared, material),
@@ -185,6 +193,8 @@ export class Lines extends Marks {
          bool isStart = position.x < 0.5;
          vec4 at = isStart ? p : q;
          vec2 side = vec2(-along.y, along.x) * position.y * (size + extra) + along * (isStart ? -extra : extra);
+         if (position.z > 1.5) side = along * (8.0 * size + 2.0 * extra);
+         else if (position.z > 0.5) side = vec2(-along.y, along.x) * position.y * (3.5 * size + 1.5 * extra) - along * extra;
          at.xy += side / resolution * at.w;
          gl_Position = isCut(start) ? nowhere : at;
          hue = colours[int(tint)];

@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { contactCount, pointsAt } from "../contacts";
 import { boundsOf, boundsOfAll, type Bounds, type Model, type ObjectState } from "../model";
+import { readField } from "../fields/fields";
 import { CameraRig } from "./camera";
 import { Highlights } from "./highlights";
 import { Layers } from "./layers";
@@ -230,6 +231,7 @@ export class SceneView {
     this.filled = true;
     this.layers.update();
     this.highlights.update();
+    this.surfaces.showField(readField(this.model), this.model.field);
   }
 
   contactPoint(): number[] | null {

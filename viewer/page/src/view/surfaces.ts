@@ -1,5 +1,7 @@
 /** The surfaces and wireframes of all objects, in a constant number of draw calls. */
 import * as THREE from "three";
+import { FIELD_COLOUR, FIELD_INPUT, FieldPaint } from "../fields/paint";
+import type { FieldChoice, FieldData } from "../fields/fields";
 import type { Layer, ObjectState } from "../model";
 import { writeNormals } from "./normals";
 import { shared } from "./primitives";
@@ -23,10 +25,11 @@ const ALL = new THREE.Vector2(0, 2);
 const CASTERS = new THREE.Vector2(0.4, 2);
 
 // Vertices of objects that a mesh does not draw are moved out of view.
-const VERTEX_SHADER = `
+const VERTEX_SHADER = `${FIELD_INPUT}
   uniform sampler2D looks; uniform vec2 drawn; uniform int selected; in uint object; in vec4 bent;
   flat out vec4 look; flat out float glow; out vec3 seen; out vec3 smoothed; out vec3 place;
   void main() {
+    readField();
     int number = int(object);
     look = texelFetch(looks, ivec2(number % ${LOOKS_WIDTH}, number / ${LOOKS_WIDTH}), 0);
     glow = number == selected ? 0.25 : 0.0;
@@ -46,7 +49,7 @@ const CUT = `
 // The flat normal comes from screen-space derivatives, so deformation costs nothing. The smooth normal is a mean
 // over triangles; it is short at sharp edges, which stay flat. Light comes from the sky, from the floor and from a
 // lamp beside the camera.
-const SURFACE_SHADER = `${CUT}
+const SURFACE_SHADER = `${CUT}${FIELD_COLOUR}
   uniform vec3 up; flat in vec4 look; flat in float glow; in vec3 seen; in vec3 smoothed; out vec4 result;
   const vec3 floorLight = vec3(0.30, 0.29, 0.28), lamp = normalize(vec3(0.35, 0.5, 0.8));
   void main() {
@@ -60,7 +63,13 @@ const SURFACE_SHADER = `${CUT}
     float lit = clamp(dot(normal, lamp), 0.0, 1.0);
     float rim = pow(1.0 - clamp(normal.z, 0.0, 1.0), 3.0);
     vec3 light = 0.55 * mix(floorLight, vec3(0.95, 0.98, 1.05), above) + 0.58 * lit + glow;
-    result = linearToOutputTexel(vec4(light * look.rgb + 0.03 * rim * above, look.a));
+    vec3 colour = look.rgb;
+    if (hasField()) {
+      colour = fieldColour();
+      light = mix(vec3(1.0), light, 0.4);  // so that colours can be compared with the colour bar
+      rim = 0.0;
+    }
+    result = linearToOutputTexel(vec4(light * colour + 0.03 * rim * above, look.a));
   }`;
 
 const COUNT_SHADER = `${CUT} out vec4 result; void main() { cut(); result = vec4(0.0); }`;
@@ -77,9 +86,9 @@ const WIREFRAME_SHADER = `${CUT}
   uniform vec4 ink; flat in vec4 look; out vec4 result;
   void main() { cut(); result = linearToOutputTexel(ink.a > 0.0 ? ink : vec4(look.rgb, 1.0)); }`;
 
-const LOOSE_SHADER = `${CUT}
+const LOOSE_SHADER = `${CUT}${FIELD_COLOUR}
   flat in vec4 look; out vec4 result;
-  void main() { cut(); result = linearToOutputTexel(vec4(look.rgb, 1.0)); }`;
+  void main() { cut(); result = linearToOutputTexel(vec4(hasField() ? fieldColour() : look.rgb, 1.0)); }`;
 
 /** The colour of the wireframe over surfaces. Without surfaces it has the colours of the objects. */
 const WIREFRAME_COLOUR = new THREE.Color("#101418");
@@ -183,16 +192,17 @@ export class Surfaces {
   private readonly stale = new Set<number>();
   private isNew = true;
   private hasLoose = false;
+  private readonly field = new FieldPaint();
   private readonly uniforms = {
-    looks: { value: makeLooks(0) }, selected: { value: -1 }, ink: { value: new THREE.Vector4() }, up: { value: new THREE.Vector3(0, 1, 0) }, slice: shared.slice,
+    ...this.field.uniforms, looks: { value: makeLooks(0) }, selected: { value: -1 }, ink: { value: new THREE.Vector4() }, up: { value: new THREE.Vector3(0, 1, 0) }, slice: shared.slice,
   };
   private readonly opaque = new THREE.Mesh(new THREE.BufferGeometry(), this.material(OPAQUE, SURFACE_SHADER));
   private readonly transparent = new THREE.Mesh(new THREE.BufferGeometry(), this.material(TRANSPARENT, SURFACE_SHADER));
   private readonly caster = new THREE.Mesh(new THREE.BufferGeometry(), this.material(CASTERS, SHADOW_SHADER));
   private readonly solid = new THREE.Mesh(new THREE.BufferGeometry(), this.material(OPAQUE, COUNT_SHADER));
   /** Edges and points of no triangle. */
-  private readonly rods = new THREE.LineSegments(new THREE.BufferGeometry(), this.material(ALL, LOOSE_SHADER));
-  private readonly particles = new THREE.Points(new THREE.BufferGeometry(), this.material(ALL, LOOSE_SHADER));
+  private readonly rods = new THREE.LineSegments(new THREE.BufferGeometry(), this.material(ALL, LOOSE_SHADER, this.field.looseUniforms));
+  private readonly particles = new THREE.Points(new THREE.BufferGeometry(), this.material(ALL, LOOSE_SHADER, this.field.looseUniforms));
   private readonly wireframe = new THREE.LineSegments(new THREE.BufferGeometry(), this.material(ALL, WIREFRAME_SHADER));
 
   constructor() {
@@ -208,10 +218,10 @@ export class Surfaces {
     for (const shape of [...this.group.children, this.caster, this.solid]) shape.frustumCulled = false;  // bounds would need an update in each frame
   }
 
-  private material(drawn: THREE.Vector2, fragmentShader: string): THREE.ShaderMaterial {
+  private material(drawn: THREE.Vector2, fragmentShader: string, more: Record<string, THREE.IUniform> = {}): THREE.ShaderMaterial {
     return new THREE.ShaderMaterial({
       glslVersion: THREE.GLSL3, vertexShader: VERTEX_SHADER, fragmentShader,
-      uniforms: { ...this.uniforms, drawn: { value: drawn } }, side: THREE.DoubleSide,
+      uniforms: { ...this.uniforms, ...more, drawn: { value: drawn } }, side: THREE.DoubleSide,
     });
   }
 
@@ -220,7 +230,7 @@ export class Surfaces {
    * it.
    */
   build(objects: ObjectState[], positions: Float32Array): void {
-    const shapes = [this.opaque, this.rods, this.particles, this.wireframe];
+    const shapes = [this.solid, this.rods, this.particles, this.wireframe];
     for (const { geometry } of shapes) geometry.dispose();
     this.uniforms.looks.value.dispose();
     this.objects = objects;
@@ -242,13 +252,20 @@ export class Surfaces {
     this.rods.geometry.setIndex(sentOnce(looseOf(objects, "edges")));
     this.particles.geometry.setIndex(sentOnce(looseOf(objects, "points")));
     this.hasLoose = objects.some(({ edges, points }) => edges.length + points.length > 0);
-    this.transparent.geometry = this.caster.geometry = this.solid.geometry = this.opaque.geometry.setIndex(sentOnce(cornersOf(objects)));
+    this.transparent.geometry = this.caster.geometry = this.opaque.geometry = this.solid.geometry.setIndex(sentOnce(cornersOf(objects)));
+    this.field.build(objects, [this.solid, this.rods, this.particles].map(({ geometry }) => geometry));
+  }
+
+  /** Colours the surfaces by a field, or not. */
+  showField(data: FieldData | null, choice: FieldChoice): void {
+    this.opaque.geometry = this.transparent.geometry = this.field.show(data, choice);
   }
 
   /** Marks positions as changed. Only visible objects are uploaded; the others wait. */
   touch(objects: Iterable<number>): void {
     const touched = [...objects];
     for (const object of touched) this.stale.add(object);
+    this.field.touch();
     this.upload(this.positions, touched);
   }
 
@@ -328,7 +345,7 @@ export class Surfaces {
   }
 
   get geometry(): THREE.BufferGeometry {
-    return this.opaque.geometry;
+    return this.solid.geometry;
   }
 
   /** Highlights one object, or none. */

@@ -17,6 +17,8 @@ function isValid(value: unknown, { kind, low, high, above, words }: ViewMember):
     case "word": return words.includes(value as string);
     case "colour": return typeof value === "string" && /^#[0-9a-f]{6}$/i.test(value);
     case "text": return typeof value === "string";
+    case "key": return value === null || typeof value === "string";
+    case "interval": return value === null || (Array.isArray(value) && value.length === 2 && value.every(Number.isFinite) && value[0] < value[1]);
     case "point": return Array.isArray(value) && value.length === 3 && value.every(Number.isFinite);
     case "objects": return value === null || (Array.isArray(value) && value.length === 2 && value.every(isId));
   }

@@ -1,0 +1,118 @@
+/** The colour bar: which colour stands for which value. The same function draws it over the view and in pictures. */
+import type { Model } from "../model";
+import { h, remPixels } from "../panels/dom";
+import { colourAt, MAP_COLOURS, type MapName } from "./colour_maps";
+import { rangeOf, readField, tickText } from "./fields";
+
+export interface Bar {
+  /** What the values are, with their unit. */
+  title: string;
+  map: MapName;
+  low: number;
+  high: number;
+  /** A line below the numbers, or empty. */
+  note: string;
+}
+
+/** Where and how to draw a bar, in the pixels of the context. */
+export interface BarPlace {
+  x: number;
+  y: number;
+  width: number;
+  /** The size of the font; all other sizes follow from it. */
+  fontSize: number;
+  ink: string;
+}
+
+/** The bar of the chosen field; null when there is none. */
+export function barOf(model: Model): Bar | null {
+  const data = readField(model);
+  if (!data) return null;
+  const { label, unit, element, vector } = data.form;
+  const [low, high] = rangeOf(data, model.field);
+  const title = `${label}${vector ? ", length of the vector" : ""}${unit ? ` (${unit})` : ""}`;
+  const isEmpty = !(data.lowest <= data.highest);
+  const note = isEmpty ? emptyNote(data.form.key, element) : data.hasGaps && element !== "contact" ? "Without a value: the object’s colour" : "";
+  return { title, map: model.field.map, low, high, note };
+}
+
+function emptyNote(key: string, element: string): string {
+  if (key === "speed" || key === "velocity") return "No values yet: they need the step before";
+  return element === "contact" ? "No values: there are no such contacts" : "No values in this frame";
+}
+
+const tickCount = (width: number, fontSize: number): number => (width >= 18 * fontSize ? 5 : 3);
+
+/** The values at the ticks, as text. */
+export function ticksOf({ low, high }: Pick<Bar, "low" | "high">, count: number): string[] {
+  if (!(high > low)) return [tickText(low, 0)];
+  const step = (high - low) / (count - 1);
+  return Array.from({ length: count }, (_, i) => tickText(i === count - 1 ? high : low + i * step, step));
+}
+
+/** The height of a bar in a font of this size. */
+export const barHeight = ({ note }: Pick<Bar, "note">, fontSize: number): number => (note ? 5.1 : 3.7) * fontSize;
+
+/** Draws a title, the colours, numbers and a note below one another. */
+export function drawColourBar(context: CanvasRenderingContext2D, { x, y, width, fontSize, ink }: BarPlace, bar: Bar): void {
+  context.save();
+  context.fillStyle = context.strokeStyle = ink;
+  context.textBaseline = "top";
+  context.font = `600 ${fontSize}px system-ui, "DejaVu Sans", sans-serif`;
+  context.fillText(bar.title, x, y, width);
+  const top = y + 1.4 * fontSize;
+  for (let i = 0; i < MAP_COLOURS; ++i) {
+    context.fillStyle = `rgb(${colourAt(bar.map, i / (MAP_COLOURS - 1)).join(" ")})`;
+    context.fillRect(x + (i * width) / MAP_COLOURS, top, Math.ceil(width / MAP_COLOURS) + (i < MAP_COLOURS - 1 ? 1 : 0), 0.8 * fontSize);
+  }
+  context.lineWidth = Math.max(1, fontSize / 12);
+  context.strokeRect(x, top, width, 0.8 * fontSize);
+  context.fillStyle = ink;
+  context.font = `${fontSize}px system-ui, "DejaVu Sans", sans-serif`;
+  const ticks = ticksOf(bar, tickCount(width, fontSize));
+  ticks.forEach((text, i) => {
+    const at = ticks.length > 1 ? i / (ticks.length - 1) : 0;
+    context.fillRect(x + at * (width - context.lineWidth), top + 0.8 * fontSize, context.lineWidth, 0.25 * fontSize);
+    context.textAlign = at === 0 ? "left" : at === 1 ? "right" : "center";
+    context.fillText(text, x + at * width, top + 1.2 * fontSize);
+  });
+  context.textAlign = "left";
+  if (bar.note) context.fillText(bar.note, x, y + 4 * fontSize, width);
+  context.restore();
+}
+
+/** The bar over the view. */
+export class ColourBar {
+  readonly canvas = h("canvas", { role: "img" });
+  readonly element = h("div", { class: "colour-bar", hidden: true }, this.canvas);
+  private drawn = "";
+
+  constructor(private readonly model: Model) {
+    for (const event of ["scene", "frame", "display"] as const) model.on(event, () => this.update());
+    new ResizeObserver(() => this.update()).observe(document.body);
+  }
+
+  /** Call also when the theme has changed. */
+  update(): void {
+    const bar = barOf(this.model);
+    this.element.hidden = bar === null;
+    if (!bar) return;
+    const rem = remPixels();
+    const { color: ink } = getComputedStyle(this.element);
+    const width = Math.min(18 * rem, document.body.clientWidth - 4 * rem);
+    const drawn = JSON.stringify([bar, rem, ink, width, devicePixelRatio]);
+    if (drawn === this.drawn) return;
+    this.drawn = drawn;
+    const fontSize = 0.78 * rem;
+    const height = barHeight(bar, fontSize);
+    const { canvas } = this;
+    [canvas.width, canvas.height] = [width, height].map((size) => Math.ceil(size * devicePixelRatio)) as [number, number];
+    canvas.style.width = `${width}px`;
+    canvas.style.height = `${height}px`;
+    const context = canvas.getContext("2d")!;
+    context.scale(devicePixelRatio, devicePixelRatio);
+    drawColourBar(context, { x: 1, y: 0, width: width - 2, fontSize, ink }, bar);
+    const [low, high] = [ticksOf(bar, 5)[0]!, ticksOf(bar, 5).at(-1)!];
+    canvas.setAttribute("aria-label", `Colour bar: ${bar.title} from ${low} to ${high}, ${bar.map}.${bar.note ? ` ${bar.note}.` : ""}`);
+  }
+}
