@@ -6,7 +6,7 @@
 #include "commands/diff.hpp"
 #include "commands/info.hpp"
 #include "commands/simulate.hpp"
-#include "commands/view.hpp"
+#include "view/view.hpp"
 #include "moving/launcher.hpp"
 #include "moving/ranks.hpp"
 #include "options/options.hpp"

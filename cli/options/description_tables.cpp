@@ -287,8 +287,8 @@ void record_table(const char* name) {
   });
 }
 
-constexpr const char* kinds_of_view_values[] = {"number", "whole", "truth", "word",
-                                                "colour", "text",  "point", "objects"};
+constexpr const char* kinds_of_view_values[] = {"number", "whole", "truth", "word",     "colour",
+                                                "text",   "key",   "point", "interval", "objects"};
 
 void view_table() {
   table("view_members", "| Member | Value | Meaning |", [] {

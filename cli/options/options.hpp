@@ -91,6 +91,8 @@ struct ViewOptions : MethodOptions {
   bool open_browser = true;
   viewer::MemoryBudget budget;
   bool follow = false;    ///< a recording that is still being written
+  std::string compared;   ///< a recording to compare with; empty: none
+  double tolerance = 0;   ///< of that comparison, in units of length
   std::string page_file;  ///< file to write instead of serving; empty: serve
   std::string view_file;  ///< camera, layers and colours; empty: those of the page
 };
@@ -118,7 +120,7 @@ struct RenderOptions : ViewOptions {
   Size size;
   double dpi = 200;
   std::string background = "white", theme = "light";
-  bool legend = false, scale_bar = false;
+  bool legend = false, scale_bar = false, colour_bar = false;
   std::string browser;  ///< path of a Chromium; empty: `find_browser` looks for one
   bool uses_graphics_card = false;
   bool quiet = false;

@@ -118,6 +118,8 @@ void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dep
                          [&options] { return options.background != "white"; },
                          "--background theme or transparent"});
   group(app.add_flag("--legend", options.legend, "Draw the names of the visible objects with their colours"));
+  group(app.add_flag("--colour-bar", options.colour_bar,
+                     "Draw the colours of the field that the view file chooses, with their values"));
   group(app.add_flag("--scale-bar", options.scale_bar,
                      "Draw a bar of a round length. It holds everywhere in an orthographic view, and at the "
                      "target of the camera in perspective, which the picture then says"));
@@ -209,6 +211,18 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
                                              "Show the frames of a recording that is still being written as "
                                              "they are saved")),
                          is_served, no_export});
+  dependences.push_back({group(app->add_option("--compare", options.compared,
+                                               "Show a second recording with the first, frame by frame, and "
+                                               "where the two differ first")
+                                   ->type_name("RUN.h5")),
+                         [&] { return options.page_file.empty() && !options.follow; },
+                         "a page that is served, without --follow"});
+  dependences.push_back(
+      {group(add_real(
+           *app, "--tolerance", ValueRange::from(0), "length",
+           [&](double tolerance) { options.tolerance = tolerance; },
+           "Largest difference of two coordinates that --compare takes as equal (default: 0)")),
+       [&] { return !options.compared.empty(); }, "--compare"});
   add_view_file(*app, options)->group("Page");
   group(app->add_option("--export", options.page_file,
                         "Write one HTML file instead of starting a server: any browser can show it, and the "

@@ -17,7 +17,7 @@
 #include "base/output_names.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
-#include "commands/build_scene_view.hpp"
+#include "view/build_scene_view.hpp"
 #include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
@@ -78,6 +78,7 @@ std::string job_of(const RenderOptions& options, Pixels size) {
   json.member("theme", options.theme);
   json.member("legend", options.legend);
   json.member("scale_bar", options.scale_bar);
+  json.member("colour_bar", options.colour_bar);
   json.end_object();
   return std::string(json.text());
 }

@@ -220,6 +220,49 @@ class Serve(ViewTest):
         self.assertGreater(contacts[0], 0)
         self.assertEqual(self.seek(page, 4)["step"], 4)
 
+    def test_two_recordings_are_compared(self):
+        body = BODY + '[[object]]\nmodel = "box"\ntranslate = [0.9, 0, 0]\n'
+        for name, seed in (("a.h5", 1), ("same.h5", 1), ("b.h5", 2)):
+            self.write("scene.toml", body)
+            self.assertEqual(self.run_here("simulate", "scene.toml", "--frames", 6, "--seed", seed, "--record", name, "--quiet").status, 0)
+        _, url = self.start("a.h5", "--compare", "b.h5")
+        page = self.connect(url)
+        scene = page.receive_text(SCENE)
+        told = scene["comparison"]
+        self.assertEqual((told["names"], told["objects_of_a"]), (["a.h5", "b.h5"], 2))
+        difference = json.loads(self.run_here("diff", "a.h5", "b.h5", "--json", "-").out)
+        self.assertEqual((told["frame"], told["text"]), (difference["frame"], difference["what"]))
+        self.assertEqual([o["name"][-3:] for o in scene["objects"]], ["(A)", "(A)", "(B)", "(B)"])
+        self.assertIn("contacts_b", scene["series"])
+        self.assertEqual(self.seek(page, 4)["step"], 4)
+        _, url = self.start("a.h5", "--compare", "same.h5")
+        told = self.connect(url).receive_text(SCENE)["comparison"]
+        self.assertEqual((told["frame"], told["text"]), (None, ""))
+        self.write("a.obj", TRIANGLE)
+        self.assert_one_line_error(self.run_here("view", "a.obj", "--compare", "b.h5"), "a.obj is not a recording")
+        self.assert_one_line_error(self.run_here("view", "a.h5", "--compare", "a.obj"), "a.obj is not a recording")
+        self.assert_one_line_error(self.run_here("view", "a.h5", "--tolerance", 1), "--compare")
+        self.assert_one_line_error(self.run_here("view", "a.h5", "--compare", "missing.h5"), "missing.h5")
+
+    def test_a_recording_that_grows_is_followed(self):
+        self.write("scene.toml", BODY)
+        self.assertEqual(self.run_here("simulate", "scene.toml", "--frames", 3, "--record", "run.h5", "--quiet").status, 0)
+        _, url = self.start("run.h5", "--follow")
+        page = self.connect(url)
+        self.assertEqual(page.receive_text(SCENE)["frames"], 3)
+        page.send(do="credit", frames=1)
+        told = page.receive_text(FRAME)
+        self.assertEqual((told["range"], told["playing"]), ([0, 2], True))
+        self.assertEqual(self.run_here("simulate", "scene.toml", "--frames", 7, "--record", "run.h5", "--quiet").status, 0)
+        while told["range"] != [0, 6]:
+            page.send(do="credit", frames=1)
+            told = page.receive_text(FRAME)
+        self.write("scene.toml", BODY + '[[object]]\nmodel = "box"\ntranslate = [0.9, 0, 0]\n')
+        self.assertEqual(self.run_here("simulate", "scene.toml", "--frames", 9, "--record", "run.h5", "--quiet").status, 0)
+        self.assertIn("recorded anew", page.receive_text(FAILURE)["message"])
+        self.write("a.obj", TRIANGLE)
+        self.assert_one_line_error(self.run_here("view", "a.obj", "--follow"), "--follow", "not a recording")
+
     def test_sequence(self):
         for i in range(12):
             self.write(f"frame_{i}.obj", moved(TRIANGLE, 0.1 * i, 0, 0))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -66,6 +67,14 @@ class Frames {
   virtual bool refresh() { return false; }
 };
 
+/// Two recordings that are shown together. Objects of different recordings are not tested with each other.
+struct Comparison {
+  std::array<std::string, 2> names{};
+  std::size_t objects_of_a = 0;          ///< the first objects are those of the first recording
+  std::optional<std::uint64_t> frame{};  ///< the first one that differs; none when only the headers differ
+  std::string text{};                    ///< what differs first; empty when nothing does
+};
+
 class Program;
 
 /// Everything a session shows: objects that a simulation moves, that were recorded, or that a program moves.
@@ -75,6 +84,7 @@ struct SceneView {
   std::vector<ViewedObject> objects{};
   std::shared_ptr<Frames> frames{};    ///< only of a recording
   std::shared_ptr<Program> program{};  ///< only of a running program
+  std::optional<Comparison> comparison{};  ///< only of two recordings
 };
 
 }  // namespace supple::viewer

@@ -268,6 +268,42 @@ TEST(ViewerRecording, LoopsAndStepsBothWaysWithinItsEnds) {
   EXPECT_FALSE(page.failure(R"({"do": "set", "objects": 2})").empty());
 }
 
+/// Both recordings at once: each has its own contacts, and no pair of objects of both is tested.
+TEST(ViewerRecording, ComparedRecordingsDoNotTouchEachOther) {
+  const Recorded recorded = record(60);
+  auto both = std::make_shared<StoredFrames>(*recorded.frames);
+  SceneView show = recorded.show;
+  const std::size_t count = show.objects.size();
+  for (std::size_t i = 0; i < count; ++i) show.objects.push_back(recorded.show.objects[i]);
+  for (auto& frame : both->positions) {
+    for (std::size_t i = 0; i < count; ++i) frame.push_back(frame[i]);
+  }
+  show.frames = both;
+  show.comparison = Comparison{{"a.h5", "b.h5"}, count, 7, "a vertex differs"};
+  TestPage page(show);
+  const Json scene = opening(page)[0].json;
+  EXPECT_EQ(scene["comparison"], (Json{{"names", {"a.h5", "b.h5"}},
+                                       {"objects_of_a", count},
+                                       {"frame", 7},
+                                       {"text", "a vertex differs"}}));
+  page.ask({{"do", "layers"}, {"colliding_vertices", true}});
+  std::size_t most = 0;
+  for (const std::uint64_t frame : {0u, 20u, 40u, 59u}) {
+    page.ask({{"do", "seek"}, {"frame", frame}});
+    page.session.advance(0);
+    const ViewerMessage message = page.frame();
+    EXPECT_EQ(contact_count(message), 2 * recorded.contacts[frame].size());
+    most = std::max(most, contact_count(message));
+    for (const std::uint32_t tag : {33u, 34u}) {
+      const std::vector<std::uint32_t> ids = message.values<std::uint32_t>(tag);
+      const std::size_t width = tag == 33 ? 2 : 8, second = tag == 33 ? 1 : 2;
+      for (std::size_t row = 0; row < ids.size(); row += width)
+        EXPECT_EQ(ids[row] < count, ids[row + second] < count);
+    }
+  }
+  EXPECT_GT(most, 0u);
+}
+
 /// Frames that are added while the recording is shown.
 TEST(ViewerRecording, GrowsAndFollows) {
   Recorded recorded = record(60);

@@ -147,6 +147,12 @@ export class History {
   }
 }
 
+/** The look of an object that nobody has changed. Objects of a second recording lie over those of the first. */
+export function usualLook({ comparison }: SceneText, index: number): { visible: true; colour: string; opacity: number } {
+  const isSecond = comparison !== null && index >= comparison.objects_of_a;
+  return { visible: true, colour: objectColour(isSecond ? index - comparison.objects_of_a : index), opacity: isSecond ? 0.5 : 1 };
+}
+
 function kindOf(object: SceneObject, source: SceneText["source"]): string {
   if (object.static) return "static";
   if (object.removed) return "removed";
@@ -222,6 +228,7 @@ export class Model extends Emitter<ModelEvents> {
     let first = 0;
     this.objects = message.text.objects.map((object, index) => {
       const kept = old[index]?.name === object.name ? old[index] : undefined;
+      const look = usualLook(message.text, index);
       return {
         index,
         name: object.name,
@@ -233,8 +240,8 @@ export class Model extends Emitter<ModelEvents> {
         positions: this.positions.subarray(first, (first += 3 * object.vertices)),
         ...elementsOf(message, index),
         visible: kept?.visible ?? true,
-        colour: kept?.colour ?? objectColour(index),
-        opacity: kept?.opacity ?? 1,
+        colour: kept?.colour ?? look.colour,
+        opacity: kept?.opacity ?? look.opacity,
       };
     });
     const sameObjects =

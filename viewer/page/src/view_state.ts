@@ -3,9 +3,8 @@
  * has it, and the browser keeps it for each scene, so that it survives a reload and a restart of the program.
  * `protocol/view_members.ts` has the ranges of all members; docs/view_file.md describes them.
  */
-import { objectColour } from "./colours";
 import type { MapName } from "./fields/colour_maps";
-import { LAYERS, type Layer, type Model, type NodeChoice } from "./model";
+import { LAYERS, usualLook, type Layer, type Model, type NodeChoice } from "./model";
 import type { CameraRig, CameraState } from "./view/camera";
 
 /** Members of the model that are part of a view, by their names in a view. */
@@ -42,7 +41,10 @@ interface ObjectLook {
 export const MOST_STORED = 2000;
 
 export function viewOf(model: Model, rig: CameraRig, page: Pick<ViewState, "tab" | "panels">, most = Infinity): ViewState {
-  const objects = model.objects.slice(0, most).filter((object) => !object.visible || object.opacity !== 1 || object.colour !== objectColour(object.index));
+  const objects = model.objects.slice(0, most).filter(({ index, visible, opacity, colour }) => {
+    const usual = usualLook(model.scene!, index);
+    return !visible || opacity !== usual.opacity || colour !== usual.colour;
+  });
   return {
     version: 1, camera: rig.state, layers: { ...model.layers },
     octree: { only_selected: model.octree.onlySelected, level: model.octree.level }, nodes: { ...model.nodes },
@@ -70,9 +72,7 @@ export function showView(model: Model, view: Partial<ViewState>): void {
   if (objects)
     for (const object of model.objects) {
       const look = Object.hasOwn(objects, object.name) ? objects[object.name]! : {};
-      object.visible = look.visible ?? true;
-      object.colour = look.colour ?? objectColour(object.index);
-      object.opacity = look.opacity ?? 1;
+      Object.assign(object, usualLook(model.scene!, object.index), look);
     }
   model.filter = filter ?? model.filter;
 }

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import * as THREE from "three";
+import type { Pen } from "../src/capture/pen";
 import { barHeight, barOf, drawColourBar, ticksOf } from "../src/fields/colour_bar";
 import { colourAt, MAPS } from "../src/fields/colour_maps";
 import { firstChoice, rangeOf, readField, tickText } from "../src/fields/fields";
@@ -93,10 +94,10 @@ test("the bar says what it shows", () => {
   assert.equal(barOf(modelWith(null, frameOf(null))), null);
   const written: string[] = [];
   const rows: number[] = [];
-  const context = new Proxy({}, { get: (_, name) => (name === "fillText" ? (line: string, _x: number, y: number) => (written.push(line), rows.push(y)) : () => {}), set: () => true });
-  drawColourBar(context as CanvasRenderingContext2D, { x: 0, y: 100, width: 300, fontSize: 10, ink: "black" }, bar);
+  const pen: Pen = { box: () => {}, text: (_x, y, line) => (written.push(line), rows.push(y)) };
+  drawColourBar(pen, { x: 0, y: 100, width: 300, fontSize: 10, ink: "black", halo: null }, bar);
   assert.deepEqual(written, ["Speed (length/s)", "1", "1.5", "2", "2.5", "3", bar.note]);
-  assert.ok(Math.min(...rows) >= 100 && Math.max(...rows) + 10 <= 100 + barHeight(bar, 10));
+  assert.ok(Math.min(...rows) >= 100 && Math.max(...rows) + 2 <= 100 + barHeight(bar, 10));
 });
 
 const objects = [

@@ -54,10 +54,12 @@ test("a triangle hides the part of a line that is behind it", () => {
 test("the overlay has the objects that fit, and a bar of a round length", () => {
   const parts: string[] = [];
   const objects = Array.from({ length: 50 }, (_, i) => ({ name: `<${i}>`, colour: "#8ecae6" }));
-  drawOverlay(svgPen(parts), { width: 400, height: 200, ink: "#000", halo: null, objects, scale: { perPixel: 0.01, unit: "m", isPerspective: true } });
+  drawOverlay(svgPen(parts), { width: 400, height: 200, ink: "#000", halo: null, objects, scale: { perPixel: 0.01, unit: "m", isPerspective: true }, bar: { title: "Speed (m/s)", map: "viridis", low: 0, high: 2, note: "" } });
   const svg = parts.join("\n");
   assert.ok(/>&#60;0&#62;</.test(svg), svg);
   assert.ok(/>and 44 more</.test(svg), svg);
+  assert.ok(/>Speed \(m\/s\)</.test(svg) && />2</.test(svg), svg);
+  assert.ok(/fill="rgb\(253 231 37\)"/.test(svg), "the last colour of viridis");
   assert.ok(/>1 m \(at the target\)</.test(svg), svg);
   assert.ok(/<rect x="288" y="184" width="100"/.test(svg), svg);
 });

@@ -208,6 +208,20 @@ void add_abilities(Stage& stage, JsonText& json) {
   if (ProgramSource* const source = stage.program()) write_breaks(source->program().state().breaks, json);
 }
 
+/// The two recordings that are shown, and where they differ first.
+void add_comparison(const Stage& stage, JsonText& json) {
+  json.key("comparison");
+  const std::optional<Comparison>& comparison = stage.show().comparison;
+  if (!comparison) return json.null();
+  json.begin_object();
+  json.member("names", std::span<const std::string>(comparison->names));
+  json.member("objects_of_a", std::uint64_t{comparison->objects_of_a});
+  json.key("frame");
+  comparison->frame ? json.value(*comparison->frame) : json.null();
+  json.member("text", comparison->text);
+  json.end_object();
+}
+
 void add_column_names(Stage& stage, JsonText& json) {
   json.key("statistics");
   json.begin_array();
@@ -264,6 +278,7 @@ void pack_scene(Stage& stage, SceneNumbers numbers, const std::vector<FieldForm>
   add_objects(stage, json);
   add_options(stage, json);
   add_settings(stage, json);
+  add_comparison(stage, json);
   add_kinds(json);
   write_fields(fields, json);
   add_column_names(stage, json);

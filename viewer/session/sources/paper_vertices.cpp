@@ -13,6 +13,7 @@ const std::vector<std::vector<std::uint32_t>>& PaperVertices::find(const SceneVi
     options.contacts = ContactKinds::none;
     options.comparison.colliding_vertices = true;
     scene_.emplace(options);
+    if (show.comparison) scene_->set_pair_filter(filter_of(*show.comparison));
     for (const ViewedObject& object : show.objects)
       ids_.push_back(scene_->add(start_of(show, object), object.options));
     versions_.assign(ids_.size(), 0);

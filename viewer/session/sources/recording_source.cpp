@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "sources/start.hpp"
+
 namespace supple::viewer {
 namespace {
 
@@ -33,6 +35,7 @@ std::vector<double> times_of(const Frames& frames) {
 
 RecordingSource::RecordingSource(const SceneView& show, std::uint64_t frame)
     : show_(show), scene_(show.simulation.scene), times_(times_of(*show.frames)) {
+  if (show.comparison) scene_.set_pair_filter(filter_of(*show.comparison));
   for (const ViewedObject& object : show.objects) {
     ids_.push_back(scene_.add(object.mesh, object.options));
     objects_.emplace_back().now = object.mesh.positions;

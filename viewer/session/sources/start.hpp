@@ -15,4 +15,11 @@ inline TriangleMesh start_of(const SceneView& show, const ViewedObject& object) 
   return mesh;
 }
 
+/// Excludes the pairs of objects of different recordings.
+inline PairFilter filter_of(const Comparison& comparison) {
+  return [count = comparison.objects_of_a](ObjectId a, ObjectId b) {
+    return (a.index < count) == (b.index < count);
+  };
+}
+
 }  // namespace supple::viewer

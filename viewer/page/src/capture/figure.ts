@@ -1,4 +1,5 @@
 /** One picture of the view: its size, its background and what is drawn over it. */
+import { barOf } from "../fields/colour_bar";
 import type { Model } from "../model";
 import { colourOf } from "../panels/dom";
 import type { Background, PictureSize, SceneView } from "../view/scene_view";
@@ -19,6 +20,7 @@ export interface Figure {
   format: "png" | "svg";
   legend: boolean;
   scaleBar: boolean;
+  colourBar: boolean;
 }
 
 /** Pixels of the picture in a CSS pixel. */
@@ -27,7 +29,7 @@ export const ratioOf = ({ size, dpi }: Figure, view: SceneView): number =>
 
 function overlayOf(model: Model, view: SceneView, figure: Figure): Overlay {
   const ratio = ratioOf(figure, view);
-  const { size: { width, height }, background, legend, scaleBar } = figure;
+  const { size: { width, height }, background, legend, scaleBar, colourBar } = figure;
   const isWhite = background === "white";
   return {
     width: width / ratio, height: height / ratio,
@@ -35,6 +37,7 @@ function overlayOf(model: Model, view: SceneView, figure: Figure): Overlay {
     halo: isWhite ? "#ffffff" : background === "transparent" ? null : colourOf("--ground"),
     objects: legend ? model.objects.filter(({ visible, vertices }) => visible && vertices > 0) : null,
     scale: scaleBar ? { perPixel: (view.rig.visibleHeight * ratio) / height, unit: model.unit, isPerspective: !view.rig.isOrthographic } : null,
+    bar: colourBar ? barOf(model) : null,
   };
 }
 
@@ -57,7 +60,7 @@ export async function drawFigure(model: Model, view: SceneView, figure: Figure):
   if (view.fault) throw new Error(view.fault);
   if (figure.format === "svg") return svgFigure(model, view, figure);
   let canvas = view.canvas;
-  if (figure.legend || figure.scaleBar) {
+  if (figure.legend || figure.scaleBar || figure.colourBar) {
     const copy = document.createElement("canvas");
     copy.width = figure.size.width;
     copy.height = figure.size.height;

@@ -39,7 +39,10 @@ export async function takeFrames(model: Model, client: Client, view: SceneView, 
   try {
     view.setPicture(figure.size, figure.background, ratioOf(figure, view));
     await client.ask({ do: "pause" });
-    let at = await client.frameThat((frame) => !frame.playing, signal);
+    const { key } = model.field;
+    const isOffered = model.scene!.fields.some((form) => form.key === key);
+    if (figure.colourBar && !isOffered) throw new Error(key === null ? "No field is chosen, so there is no colour bar." : `This scene has no field ${key}.`);
+    let at = await client.frameThat((frame) => !frame.playing && (!isOffered || frame.field === key), signal);
     if (first !== null && at.step !== first) at = await goTo(first, first - at.step);
     for (let taken = 1; ; ++taken) {
       const picture = drawFigure(model, view, figure);

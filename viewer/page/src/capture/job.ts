@@ -18,6 +18,7 @@ interface Job {
   theme: "light" | "dark";
   legend: boolean;
   scale_bar: boolean;
+  colour_bar: boolean;
 }
 
 /** The job in this page; null in a page for people. */
@@ -30,7 +31,7 @@ export function embeddedJob(): Job | null {
 export async function runJob(job: Job, step: number, model: Model, client: Client, view: SceneView): Promise<void> {
   const [first, last, every] = job.frames ?? [step, step, 1];
   const { width, height, dpi, format, background } = job;
-  const figure = { size: { width, height }, dpi, format, background, legend: job.legend, scaleBar: job.scale_bar };
+  const figure = { size: { width, height }, dpi, format, background, legend: job.legend, scaleBar: job.scale_bar, colourBar: job.colour_bar };
   try {
     const plan = { first, count: Math.floor((last - first) / every) + 1, every, figure };
     await takeFrames(model, client, view, plan, new AbortController().signal, (picture, at) => client.deliver({ kind: "picture", step: at.step }, picture));

@@ -1,4 +1,5 @@
-/** The legend and the scale bar of a picture, drawn in the same way by the dialog and by `supple render`. */
+/** The legend, the colour bar and the scale bar of a picture, drawn in the same way by the dialog and by `supple render`. */
+import { barHeight, drawColourBar, type Bar } from "../fields/colour_bar";
 import type { ObjectState } from "../model";
 import { readable } from "../panels/dom";
 import { niceStep } from "../view/world";
@@ -9,6 +10,7 @@ const MARGIN = 12;
 const TEXT_SIZE = 12;
 const LINE = 18;
 const SWATCH = 11;
+const BAR_WIDTH = 220;
 /** The part of the height that a legend may fill. */
 const MOST_OF_HEIGHT = 0.7;
 
@@ -21,6 +23,8 @@ export interface Overlay {
   /** The objects of the legend; null for no legend. */
   objects: Pick<ObjectState, "name" | "colour">[] | null;
   scale: Scale | null;
+  /** The colours of a field. */
+  bar: Bar | null;
 }
 
 export interface Scale {
@@ -52,8 +56,12 @@ function drawScale(pen: Pen, { perPixel, unit, isPerspective }: Scale, width: nu
   pen.text(width - MARGIN, y - 6, words.filter(Boolean).join(" "), { ...text, align: "end" });
 }
 
-export function drawOverlay(pen: Pen, { width, height, ink, halo, objects, scale }: Overlay): void {
+export function drawOverlay(pen: Pen, { width, height, ink, halo, objects, scale, bar }: Overlay): void {
   const text: Text = { size: TEXT_SIZE, colour: ink, halo, align: "start" };
   if (objects) drawLegend(pen, objects, height, text);
   if (scale) drawScale(pen, scale, width, height, text);
+  if (bar) {
+    const y = height - MARGIN - barHeight(bar, TEXT_SIZE);
+    drawColourBar(pen, { x: MARGIN, y, width: Math.min(BAR_WIDTH, width - 2 * MARGIN), fontSize: TEXT_SIZE, ink, halo }, bar);
+  }
 }

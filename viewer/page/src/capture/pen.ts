@@ -5,7 +5,7 @@ export interface Text {
   colour: string;
   /** Surrounds the letters, so that they are readable on any ground; null for none. */
   halo: string | null;
-  align: "start" | "end";
+  align: "start" | "middle" | "end";
 }
 
 export interface Pen {
@@ -23,8 +23,10 @@ export function canvasPen(context: CanvasRenderingContext2D, scale: number): Pen
   context.lineJoin = "round";
   return {
     box(x, y, width, height, fill, edge) {
-      context.fillStyle = fill;
-      context.fillRect(x, y, width, height);
+      if (fill !== "none") {
+        context.fillStyle = fill;
+        context.fillRect(x, y, width, height);
+      }
       if (edge === null) return;
       context.strokeStyle = edge;
       context.lineWidth = 1;
@@ -32,7 +34,7 @@ export function canvasPen(context: CanvasRenderingContext2D, scale: number): Pen
     },
     text(x, y, text, { size, colour, halo, align }) {
       context.font = `${size}px ${FONT}`;
-      context.textAlign = align;
+      context.textAlign = align === "middle" ? "center" : align;
       if (halo !== null) {
         context.strokeStyle = halo;
         context.lineWidth = HALO_WIDTH;

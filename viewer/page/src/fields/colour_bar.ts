@@ -1,4 +1,5 @@
 /** The colour bar: which colour stands for which value. The same function draws it over the view and in pictures. */
+import { canvasPen, type Pen, type Text } from "../capture/pen";
 import type { Model } from "../model";
 import { h, remPixels } from "../panels/dom";
 import { colourAt, MAP_COLOURS, type MapName } from "./colour_maps";
@@ -14,7 +15,7 @@ export interface Bar {
   note: string;
 }
 
-/** Where and how to draw a bar, in the pixels of the context. */
+/** Where and how to draw a bar, in the units of the pen. */
 export interface BarPlace {
   x: number;
   y: number;
@@ -22,6 +23,8 @@ export interface BarPlace {
   /** The size of the font; all other sizes follow from it. */
   fontSize: number;
   ink: string;
+  /** Surrounds the letters; null for none. */
+  halo: string | null;
 }
 
 /** The bar of the chosen field; null when there is none. */
@@ -54,31 +57,24 @@ export function ticksOf({ low, high }: Pick<Bar, "low" | "high">, count: number)
 export const barHeight = ({ note }: Pick<Bar, "note">, fontSize: number): number => (note ? 5.1 : 3.7) * fontSize;
 
 /** Draws a title, the colours, numbers and a note below one another. */
-export function drawColourBar(context: CanvasRenderingContext2D, { x, y, width, fontSize, ink }: BarPlace, bar: Bar): void {
-  context.save();
-  context.fillStyle = context.strokeStyle = ink;
-  context.textBaseline = "top";
-  context.font = `600 ${fontSize}px system-ui, "DejaVu Sans", sans-serif`;
-  context.fillText(bar.title, x, y, width);
+export function drawColourBar(pen: Pen, { x, y, width, fontSize, ink, halo }: BarPlace, bar: Bar): void {
+  const write = (at: number, below: number, text: string, align: Text["align"] = "start") => pen.text(at, y + below * fontSize, text, { size: fontSize, colour: ink, halo, align });
   const top = y + 1.4 * fontSize;
+  const height = 0.8 * fontSize;
+  write(x, 0.9, bar.title);
   for (let i = 0; i < MAP_COLOURS; ++i) {
-    context.fillStyle = `rgb(${colourAt(bar.map, i / (MAP_COLOURS - 1)).join(" ")})`;
-    context.fillRect(x + (i * width) / MAP_COLOURS, top, Math.ceil(width / MAP_COLOURS) + (i < MAP_COLOURS - 1 ? 1 : 0), 0.8 * fontSize);
+    const left = x + (i * width) / MAP_COLOURS;
+    // Overlaps the next one, so that no gap shines through.
+    pen.box(left, top, i < MAP_COLOURS - 1 ? (1.5 * width) / MAP_COLOURS : x + width - left, height, `rgb(${colourAt(bar.map, i / (MAP_COLOURS - 1)).join(" ")})`, null);
   }
-  context.lineWidth = Math.max(1, fontSize / 12);
-  context.strokeRect(x, top, width, 0.8 * fontSize);
-  context.fillStyle = ink;
-  context.font = `${fontSize}px system-ui, "DejaVu Sans", sans-serif`;
+  pen.box(x, top, width, height, "none", ink);
   const ticks = ticksOf(bar, tickCount(width, fontSize));
   ticks.forEach((text, i) => {
     const at = ticks.length > 1 ? i / (ticks.length - 1) : 0;
-    context.fillRect(x + at * (width - context.lineWidth), top + 0.8 * fontSize, context.lineWidth, 0.25 * fontSize);
-    context.textAlign = at === 0 ? "left" : at === 1 ? "right" : "center";
-    context.fillText(text, x + at * width, top + 1.2 * fontSize);
+    pen.box(x + at * (width - 1), top + height, 1, 0.25 * fontSize, ink, null);
+    write(x + at * width, 3.4, text, at === 0 ? "start" : at === 1 ? "end" : "middle");
   });
-  context.textAlign = "left";
-  if (bar.note) context.fillText(bar.note, x, y + 4 * fontSize, width);
-  context.restore();
+  if (bar.note) write(x, 4.8, bar.note);
 }
 
 /** The bar over the view. */
@@ -110,8 +106,7 @@ export class ColourBar {
     canvas.style.width = `${width}px`;
     canvas.style.height = `${height}px`;
     const context = canvas.getContext("2d")!;
-    context.scale(devicePixelRatio, devicePixelRatio);
-    drawColourBar(context, { x: 1, y: 0, width: width - 2, fontSize, ink }, bar);
+    drawColourBar(canvasPen(context, devicePixelRatio), { x: 1, y: 0, width: width - 2, fontSize, ink, halo: null }, bar);
     const [low, high] = [ticksOf(bar, 5)[0]!, ticksOf(bar, 5).at(-1)!];
     canvas.setAttribute("aria-label", `Colour bar: ${bar.title} from ${low} to ${high}, ${bar.map}.${bar.note ? ` ${bar.note}.` : ""}`);
   }

@@ -2,6 +2,7 @@
 import { MOST_FILES } from "../capture/archive";
 import type { Figure } from "../capture/figure";
 import type { FramesPlan } from "../capture/frames";
+import { readField } from "../fields/fields";
 import type { Model } from "../model";
 import type { Background, PictureSize, SceneView } from "../view/scene_view";
 import { h, readable, sheet } from "./dom";
@@ -32,6 +33,8 @@ export class FramesDialog {
   private readonly background = this.choice("Background", BACKGROUNDS);
   private readonly legend = h("input", { type: "checkbox" });
   private readonly scaleBar = h("input", { type: "checkbox" });
+  private readonly colourBar = h("input", { type: "checkbox" });
+  private readonly ofField = h("label", { class: "check" }, this.colourBar, "Colour bar of the field");
   private readonly count = this.number("Pictures", 1);
   private readonly until = this.number("Last frame", 0);
   private readonly every = this.number("Every n-th step", 1);
@@ -54,6 +57,7 @@ export class FramesDialog {
       this.counted, this.reached, this.row("Every n-th step", this.every), this.row("Background", this.background),
       h("label", { class: "check" }, this.legend, "Legend with the names of objects"),
       h("label", { class: "check" }, this.scaleBar, "Scale bar"),
+      this.ofField,
       this.summary,
       h("button", { type: "submit", class: "primary" }, "Save"),
     );
@@ -149,6 +153,7 @@ export class FramesDialog {
     const figure = {
       size: this.chosenSize(dpi), dpi, format: this.format.value as Figure["format"], background: this.background.value as Background,
       legend: this.legend.checked, scaleBar: this.scaleBar.checked,
+      colourBar: this.colourBar.checked && !this.ofField.hidden,
     };
     return { first: null, count: Math.min(count, MOST_FILES), every, figure };
   }
@@ -156,6 +161,7 @@ export class FramesDialog {
   /** Shows the fields that match the choice, and a summary of it. */
   private fit(): void {
     this.until.min = String(this.step);
+    this.ofField.hidden = readField(this.model) === null;
     this.own.hidden = this.width.disabled = this.height.disabled = this.size.value !== "";
     const isInMillimetres = this.size.value === "" && this.unit.value === "millimetres";
     this.dpi.required = isInMillimetres;  // millimetres need it

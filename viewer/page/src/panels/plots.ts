@@ -19,7 +19,8 @@ interface Plot {
 }
 
 const isStage = (name: string): boolean => name.endsWith("_seconds");
-const labelOf = (name: string): string => name.replace(/_seconds$/, "").replace(/_/g, " ");
+/** Columns of the second of two recordings end with `_b`. */
+const labelOf = (name: string): string => name.replace(/_b$/, " of B").replace(/_seconds$/, "").replace(/_/g, " ");
 
 export class Plots {
   readonly element = h("div", { class: "plots" });
@@ -46,7 +47,7 @@ export class Plots {
     this.element.replaceChildren();
     if (!this.model.scene) return;
     const { names } = this.model.history;
-    const has = (wanted: string[]) => wanted.filter((name) => names.includes(name));
+    const has = (wanted: string[]) => wanted.flatMap((name) => [name, `${name}_b`]).filter((name) => names.includes(name));
     const stages = names.filter(isStage);
     this.add("Object pairs", has(["object_pairs"]), 1);
     const near = this.model.scene.contacts.includes("proximity") ? ["proximity_pairs"] : [];

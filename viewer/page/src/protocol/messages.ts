@@ -67,6 +67,16 @@ export interface Break {
   point: Vector | null;
 }
 
+/** Two recordings that are shown together, and the frame that differs first; the text is empty when nothing does. */
+export interface Comparison {
+  names: [string, string];
+  /** The first objects are those of the first recording. */
+  objects_of_a: number;
+  /** Null when only the headers differ. */
+  frame: number | null;
+  text: string;
+}
+
 export interface SceneText {
   version: string;
   title: string;
@@ -79,6 +89,7 @@ export interface SceneText {
   border?: [Vector, Vector] | null;
   objects: SceneObject[];
   frames: number | null;
+  comparison: Comparison | null;
   time_step: number;
   /** Digits, because numbers of JavaScript are exact only up to 2^53. */
   seed: string;
@@ -310,6 +321,11 @@ function need(ok: boolean, name: string): void {
   if (!ok) fail(`its text has no valid “${name}”`);
 }
 
+function isComparison(value: unknown): value is Comparison {
+  const { names, objects_of_a: count, frame, text } = value as Comparison;
+  return isTexts(names) && names.length === 2 && isCount(count) && (frame === null || isCount(frame)) && isText(text);
+}
+
 function sceneText(json: Record<string, unknown>): SceneText {
   const s = json as unknown as SceneText;
   for (const name of ["version", "title", "contacts"] as const) need(isText(s[name]), name);
@@ -321,6 +337,8 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(!s.border || (s.border.length === 2 && s.border.every(isVector)), "border");
   need(s.frames === null || isCount(s.frames), "frames");
   need((s.frames !== null) === (s.source === "recording"), "frames");
+  s.comparison ??= null;
+  need(s.comparison === null || isComparison(s.comparison), "comparison");
   need(isNumber(s.time_step), "time_step");
   need(isText(s.seed), "seed");
   need(Array.isArray(s.settings) && s.settings.every(isSetting), "settings");

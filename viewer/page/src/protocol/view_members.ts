@@ -2,7 +2,7 @@
 
 export interface ViewMember {
   path: string;
-  kind: "number" | "whole" | "truth" | "word" | "colour" | "text" | "point" | "objects";
+  kind: "number" | "whole" | "truth" | "word" | "colour" | "text" | "key" | "point" | "interval" | "objects";
   /** What a value must be, in words. */
   range: string;
   /** Of numbers; `above` excludes the lowest number. */

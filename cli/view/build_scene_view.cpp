@@ -1,23 +1,21 @@
-#include "commands/build_scene_view.hpp"
+#include "view/build_scene_view.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <variant>
 
-#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "export/embedded.hpp"
 #include "inputs/frame_files.hpp"
-#include "session/messages/statistics.hpp"
+#include "inputs/recorded_input.hpp"
 #include "supple/error.hpp"
+#include "view/recorded_frames.hpp"
 
 namespace supple::cli {
 namespace {
@@ -78,110 +76,11 @@ class FileFrames : public viewer::Frames {
   viewer::Series series_;
 };
 
-/// A recording. All objects move except static ones.
-class RecordedFrames : public viewer::Frames {
- public:
-  RecordedFrames(std::shared_ptr<const Recording> recording, const ViewOptions& options)
-      : path_(options.inputs.front()), recording_(std::move(recording)), is_growing_(options.follow) {
-    std::uint32_t place = 0;
-    for (const RecordedObject& object : recording_->header().objects) places_.emplace(object.id, place++);
-    // The same names as in frames, so that a page plots both in the same way.
-    series_.names.emplace_back("time");
-    viewer::for_each_statistic({}, [&](const char* name, double) { series_.names.emplace_back(name); });
-    file_ = state_of_file();
-    Progress progress(recording_->frame_count(), true);
-    read_series(&progress);
-  }
-
-  /// Frames that were added are counted when their series has been read.
-  std::uint64_t count() const override { return count_; }
-  void read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const override {
-    const std::vector<Vec3d> recorded = recording_->positions(frame, object);
-    std::copy(recorded.begin(), recorded.end(), positions.begin());
-  }
-  const viewer::Series& series() const override { return series_; }
-  bool is_growing() const override { return is_growing_; }
-  bool refresh() override;
-
- private:
-  using FileState = std::pair<std::filesystem::file_time_type, std::uintmax_t>;  // last change, size
-
-  FileState state_of_file() const {
-    std::error_code error;  // a file that is gone has changed
-    return {std::filesystem::last_write_time(path_, error), std::filesystem::file_size(path_, error)};
-  }
-  bool continues(const Recording& recording) const;
-  void read_series(Progress* progress);
-
-  std::string path_;
-  std::shared_ptr<const Recording> recording_;
-  std::map<ObjectId, std::uint32_t> places_;
-  std::uint64_t count_ = 0;
-  viewer::Series series_;
-  bool is_growing_;
-  FileState file_;
-};
-
-/// Reads the series of frames that it does not have.
-void RecordedFrames::read_series(Progress* progress) {
-  const std::uint64_t all = recording_->frame_count();
-  for (; count_ < all; ++count_) {
-    const RecordedFrame frame = recording_->summary(count_);
-    series_.values.push_back(frame.time);
-    viewer::for_each_statistic(frame.stats,
-                               [&](const char*, double value) { series_.values.push_back(value); });
-    const auto add = [&](const std::vector<ObjectPair>& pairs, std::vector<viewer::Series::Event>& events) {
-      for (const ObjectPair& pair : pairs)
-        events.push_back({static_cast<std::uint32_t>(count_), places_.at(pair.a), places_.at(pair.b)});
-    };
-    add(frame.contact_events.begin, series_.contacts.begin);
-    add(frame.contact_events.end, series_.contacts.end);
-    add(frame.narrow_phase_events.begin, series_.narrow_phase.begin);
-    add(frame.narrow_phase_events.end, series_.narrow_phase.end);
-    add(frame.volume_events.begin, series_.volumes.begin);
-    add(frame.volume_events.end, series_.volumes.end);
-    if (progress != nullptr)
-      progress->update(count_ + 1, fmt::format("reading frame {} of {}", count_ + 1, all));
-  }
-}
-
-bool RecordedFrames::continues(const Recording& recording) const {
-  const auto& before = recording_->header().objects;
-  const auto& now = recording.header().objects;
-  return recording.frame_count() >= count_ &&
-         std::equal(before.begin(), before.end(), now.begin(), now.end(),
-                    [](const RecordedObject& a, const RecordedObject& b) {
-                      return a.id == b.id && a.options.name == b.options.name && a.triangles == b.triangles &&
-                             a.rest_positions.size() == b.rest_positions.size();
-                    });
-}
-
-bool RecordedFrames::refresh() {
-  if (!is_growing_) return false;
-  const FileState now = state_of_file();
-  if (now == file_) return false;
-  file_ = now;
-  std::shared_ptr<const Recording> recording;
-  try {
-    recording = std::make_shared<const Recording>(path_);
-  } catch (const Error&) {
-    return false;  // it is being replaced; the next change is looked at again
-  }
-  if (!continues(*recording)) {
-    is_growing_ = false;
-    throw Error(path_ + ": has been recorded anew; open it again");
-  }
-  const std::uint64_t before = count_;
-  recording_ = std::move(recording);
-  read_series(nullptr);
-  return count_ > before;
-}
-
 /// Null for a simulation.
 std::shared_ptr<viewer::Frames> frames_of(const Input& input, const ViewOptions& options) {
   for (const InputObject& object : input.objects) {
     if (const auto* motion = motion_of<RecordedMotion>(object))
-      return std::make_shared<RecordedFrames>(motion->recording, options);
+      return std::make_shared<RecordedFrames>(options.inputs.front(), motion->recording, options.follow);
   }
   if (options.follow)
     throw Error(
@@ -194,6 +93,13 @@ std::shared_ptr<viewer::Frames> frames_of(const Input& input, const ViewOptions&
         "cannot show together; record them first, supple simulate {} --record run.h5, and view run.h5",
         options.inputs.front(), options.inputs.front()));
   return std::make_shared<FileFrames>(input);
+}
+
+std::shared_ptr<const Recording> recording_of(const Input& input) {
+  for (const InputObject& object : input.objects) {
+    if (const auto* motion = motion_of<RecordedMotion>(object)) return motion->recording;
+  }
+  return nullptr;
 }
 
 viewer::ViewedObject object_of(const InputObject& object) {
@@ -215,6 +121,31 @@ bool moves_by_itself(const Input& input) {
 std::string title_of(const std::vector<std::string>& inputs) {
   const std::string first = valid_utf8(std::filesystem::path(inputs.front()).filename().string());
   return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
+}
+
+/// Adds the objects and the frames of the second recording, and where the two differ first.
+void compare(viewer::SceneView& show, const Input& input, const ViewOptions& options) {
+  const std::string& first = options.inputs.front();
+  if (options.inputs.size() != 1 || !is_recording(first))
+    throw Error(fmt::format("--compare: {} is not a recording; compare two recordings", first));
+  if (!is_recording(options.compared))
+    throw Error(fmt::format("--compare: {} is not a recording; compare two recordings", options.compared));
+  const Input other = read_recording(options.compared);
+  const auto a = recording_of(input), b = recording_of(other);
+  if (!a || !b)
+    throw Error(fmt::format("--compare: nothing moves in {}", a ? options.compared : first));
+  show.title = fmt::format("{} and {}", show.title, title_of({options.compared}));
+  viewer::Comparison comparison{{title_of({first}), title_of({options.compared})}, show.objects.size(), {}, {}};
+  show.frames = std::make_shared<ComparedFrames>(
+      show.frames, std::make_shared<RecordedFrames>(options.compared, b, false), show.objects.size());
+  for (const InputObject& object : other.objects) show.objects.push_back(object_of(object));
+  for (std::size_t i = 0; i < show.objects.size(); ++i)
+    show.objects[i].options.name += i < comparison.objects_of_a ? " (A)" : " (B)";
+  if (const auto difference = find_first_difference(*a, *b, options.tolerance)) {
+    comparison.frame = difference->frame;
+    comparison.text = difference->what;
+  }
+  show.comparison = std::move(comparison);
 }
 
 }  // namespace
@@ -251,6 +182,7 @@ viewer::SceneView build_scene_view(const Input& input, const ViewOptions& option
   show.simulation = input.simulation;
   for (const InputObject& object : input.objects) show.objects.push_back(object_of(object));
   show.frames = frames_of(input, options);
+  if (!options.compared.empty()) compare(show, input, options);
   return show;
 }
 

@@ -1,4 +1,4 @@
-#include "commands/view.hpp"
+#include "view/view.hpp"
 
 #include <fmt/core.h>
 
@@ -14,7 +14,7 @@
 #include "base/missing_threads.hpp"
 #include "base/output_names.hpp"
 #include "base/text.hpp"
-#include "commands/build_scene_view.hpp"
+#include "view/build_scene_view.hpp"
 #include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
