@@ -14,6 +14,7 @@
 #include "messages/json_value.hpp"
 #include "messages/message.hpp"
 #include "messages/scene_message.hpp"
+#include "pins/pin_rows.hpp"
 #include "replies.hpp"
 #include "session.hpp"
 #include "settings.hpp"
@@ -76,6 +77,7 @@ class Session::Implementation {
   void read(Arguments& arguments);
   void node_pairs(Arguments& arguments);
   void set_breaks(Arguments& arguments);
+  void pins(Arguments& arguments);
   void program(Arguments& arguments);
 
   const SceneView& scene() const { return stage_->show(); }
@@ -93,6 +95,7 @@ class Session::Implementation {
 
   void fail(const std::string& message, bool fatal = false, std::span<const std::string> layers = {});
   bool pack_frame(MessageWriter& message);
+  void measure_pins();
 
   SceneView show_;
   Settings settings_;
@@ -112,6 +115,7 @@ class Session::Implementation {
   Replies replies_;
   std::vector<JsonValue> deferred_;  // commands that wait until the scene of the program can be read
   FramePacker packer_;
+  PinRows pins_;
 };
 
 }  // namespace supple::viewer

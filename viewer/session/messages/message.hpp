@@ -50,6 +50,7 @@ enum class Tag : std::uint32_t {
   curves = 58,
   curve_points = 59,
   enclosed_vertices = 60,
+  pin_rows = 61,
   series = 64,
   series_contact_begin = 65,
   series_contact_end = 66,

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "messages/message.hpp"
+#include "pins/pin_values.hpp"
 
 namespace supple::viewer {
 
@@ -104,6 +105,11 @@ inline constexpr std::array section_forms = std::to_array<SectionForm>({
      "centroid of the curve, depth, unit normal x, y, z, area", ""},
     {Tag::enclosed_vertices, "enclosed_vertices", ScalarOfSection::uint32, 1, in_frame, false,
      "vertices that curves enclose, first those of a, then those of b", ""},
+    {Tag::pin_rows, "pin_rows", ScalarOfSection::float64, pin_row_width, in_frame, true,
+     "step, time, and the values of a pin, in the order of `pin_values` of the scene; the object is the "
+     "number "
+     "of the pin",
+     "with rows"},
     {Tag::series, "series", ScalarOfSection::float64, 0, in_series, false,
      "one row for each frame, in the order of the names in `series` of the scene", ""},
     {Tag::series_contact_begin, "series_contact_begin", ScalarOfSection::uint32, 3, in_series, false,

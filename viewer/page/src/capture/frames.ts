@@ -37,7 +37,7 @@ export async function takeFrames(model: Model, client: Client, view: SceneView, 
   };
   const { figure, first, every, count } = plan;
   try {
-    view.setPicture(figure.size, figure.background, ratioOf(figure, view));
+    view.setPicture(figure.size, figure.background, ratioOf(figure, view), figure.format === "svg" || figure.scaleBar);
     await client.ask({ do: "pause" });
     let at = await client.frameThat((frame) => !frame.playing, signal);
     if (first !== null && at.step !== first) at = await goTo(first, first - at.step);

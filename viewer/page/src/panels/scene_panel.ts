@@ -3,7 +3,7 @@ import { GAPS, levelColour, LEVELS, MARKS } from "../colours";
 import type { Layer, Model } from "../model";
 import type { FrameMessage } from "../protocol/messages";
 import { h, readable } from "./dom";
-import { ObjectList } from "./object_list";
+import { ObjectList } from "./tables/object_list";
 import { TouchLine } from "./touch_line";
 import { ViewOptions } from "./view_options";
 

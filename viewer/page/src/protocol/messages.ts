@@ -66,6 +66,13 @@ export interface Break {
   point: Vector | null;
 }
 
+/** A number that is measured of a pin. */
+export interface PinValue {
+  key: string;
+  doc: string;
+  unit: string;
+}
+
 export interface SceneText {
   version: string;
   title: string;
@@ -88,6 +95,8 @@ export interface SceneText {
   can: string[];
   statistics: string[];
   series: string[];
+  /** The numbers in a row of a pin, after step and time. */
+  pin_values: PinValue[];
   warnings: string[];
   /** Only of a program. */
   breaks?: BreakSetting[];
@@ -315,6 +324,8 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(isText(s.seed), "seed");
   need(Array.isArray(s.settings) && s.settings.every(isSetting), "settings");
   need(isKinds(s.kinds), "kinds");
+  s.pin_values ??= [];
+  need(Array.isArray(s.pin_values) && s.pin_values.every((value) => isText(value?.key) && isText(value.doc) && isText(value.unit)), "pin_values");
   for (const name of ["can", "statistics", "series", "warnings"] as const) need(isTexts(s[name]), name);
   need(Array.isArray(s.objects), "objects");
   for (const object of s.objects as unknown[]) {

@@ -45,6 +45,7 @@ export const FORMS = {
   58: { name: "curves", array: Uint32Array, width: 8, kinds: ["frame"], perObject: false },
   59: { name: "curve_points", array: Float32Array, width: 8, kinds: ["frame"], perObject: false },
   60: { name: "enclosed_vertices", array: Uint32Array, width: 1, kinds: ["frame"], perObject: false },
+  61: { name: "pin_rows", array: Float64Array, width: 13, kinds: ["frame"], perObject: true },
   64: { name: "series", array: Float64Array, width: 0, kinds: ["series"], perObject: false },
   65: { name: "series_contact_begin", array: Uint32Array, width: 3, kinds: ["series"], perObject: false },
   66: { name: "series_contact_end", array: Uint32Array, width: 3, kinds: ["series"], perObject: false },
