@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "session/pins/pin_rows.hpp"
+
 namespace supple::viewer {
 namespace {
 
@@ -32,7 +34,7 @@ void Gate::pass(const Scene& scene, const DetectRequest& request) {
   state_.last_step = scene.result().step;
   passed_at_ = begin;
   step_ = {&scene, request.contacts.value_or(scene.options().contacts)};
-  if (has_page_) remember(scene.result());
+  if (has_page_) remember(scene);
   if (steps_ > 0) --steps_;
   auto found = finder_.find(scene, state_.breaks);
   if (found && (has_page_ || waits_for_page_)) {
@@ -49,13 +51,16 @@ void Gate::pass(const Scene& scene, const DetectRequest& request) {
   budget_.skip(end, surroundings_.seconds());
 }
 
-void Gate::remember(const DetectResult& result) {
+void Gate::remember(const Scene& scene) {
+  const DetectResult& result = scene.result();
   if (std::ssize(rows_) >= most_rows) rows_.erase(rows_.begin(), rows_.begin() + most_rows / 2);
   const auto copy = [](const PairEvents& events) {
     return StepRow::Events{{events.begin.begin(), events.begin.end()},
                            {events.end.begin(), events.end.end()}};
   };
   rows_.push_back({result.step, result.stats, copy(result.contact_events), copy(result.volume_events)});
+  pins_.measure(scene, result.step, static_cast<double>(result.step) * time_step_, pin_rows_);
+  limit_rows(pin_rows_);
 }
 
 void Gate::wait(const Scene& scene, const CallLimits& limits) {
@@ -190,6 +195,16 @@ void Gate::set_breaks(const BreakOptions& breaks) {
 std::vector<StepRow> Gate::take_rows() {
   const std::lock_guard lock(mutex_);
   return std::exchange(rows_, {});
+}
+
+void Gate::set_pins(std::vector<Pin> pins) {
+  const std::lock_guard lock(mutex_);
+  pins_.set(std::move(pins));
+}
+
+std::vector<PinRow> Gate::take_pin_rows() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(pin_rows_, {});
 }
 
 ProgramState Gate::state() const {

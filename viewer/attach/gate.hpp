@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "break_finder.hpp"
+#include "session/pins/pin_meter.hpp"
 #include "session/program/program.hpp"
 #include "slowdown_budget.hpp"
 #include "supple/call_limits.hpp"
@@ -52,6 +53,8 @@ class Gate final : public Program {
   void step(std::uint64_t count) override;
   void set_breaks(const BreakOptions& breaks) override;
   std::vector<StepRow> take_rows() override;
+  void set_pins(std::vector<Pin> pins) override;
+  std::vector<PinRow> take_pin_rows() override;
   ProgramState state() const override;
   double time_step() const override { return time_step_; }
   std::vector<UserField> fields() const override { return fields_.list(); }
@@ -63,7 +66,7 @@ class Gate final : public Program {
  private:
   using Lock = std::unique_lock<std::mutex>;
   bool is_halted() const;
-  void remember(const DetectResult& result);
+  void remember(const Scene& scene);
   void show(Lock& lock);
   template <class Limits>
   void hold(Lock& lock, const Limits& limits);
@@ -80,7 +83,9 @@ class Gate final : public Program {
   BreakFinder finder_;
   ProgramState state_;
   ProgramStep step_;
+  PinMeter pins_;
   std::vector<StepRow> rows_;  // that the session has not taken
+  std::vector<PinRow> pin_rows_;
   double passed_at_ = 0;
   std::uint64_t steps_ = 0;  // to take before the pause
   std::uint64_t frame_count_ = 0;

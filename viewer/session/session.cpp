@@ -15,13 +15,17 @@ void Session::Implementation::greet() {
   owes_scene_ = true;
   has_news_ = true;
   packer_.forget();
+  pins_.set({});
   credit_ = 0;
   replies_.clear();
   layers_ = {};
   field_.choose(nullptr);
   deferred_.clear();
   if (SimulationSource* const simulation = stage_->simulation()) simulation->release();
-  if (ProgramSource* const source = stage_->program()) source->program().set_page(true);
+  if (ProgramSource* const source = stage_->program()) {
+    source->program().set_pins({});
+    source->program().set_page(true);
+  }
 }
 
 void Session::Implementation::leave() {
@@ -68,6 +72,7 @@ void Session::Implementation::take_state() {
   if (is_past || stage_->simulation() == nullptr) return;
   const Source& source = stage_->source();
   packer_.add_step(source.step(), source.motion_seconds(), source.scene().result());
+  pins_.measure(source.scene(), source.step(), source.time());
   stage_->keep();
 }
 
@@ -110,6 +115,30 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
   return message.finish();
 }
 
+/// Measures the pins in the step of the frame; a program has measured the present itself. A recording and the
+/// past can be at any step, so they read where objects were in the step before.
+void Session::Implementation::measure_pins() {
+  const RecordingSource* const recording = is_past_ ? stage_->past() : stage_->recording();
+  if (stage_->program() != nullptr && recording == nullptr) return;
+  const Source& source = stage_->source();
+  PinMeter::Earlier earlier;
+  if (recording != nullptr) {
+    earlier = [this, recording](ObjectId object) -> std::optional<PinMeter::Place> {
+      if (!recording->has_path()) return std::nullopt;
+      const std::uint64_t before = recording->frame() - 1;
+      std::vector<Vec3d> positions(recording->positions(object.index).begin(),
+                                   recording->positions(object.index).end());
+      const bool moves = !scene().objects[object.index].options.is_static;
+      if (moves && failure_of([&] { scene().frames->read(before, object.index, positions); }))
+        return std::nullopt;
+      const auto center = center_of(positions);
+      if (!center) return std::nullopt;
+      return PinMeter::Place{scene().frames->step(before), recording->time_of(before), *center};
+    };
+  }
+  pins_.measure(source.scene(), source.step(), source.time(), earlier);
+}
+
 /// Returns false on failure, and then drops the optional layers.
 bool Session::Implementation::pack_frame(MessageWriter& message) {
   FrameView frame{scene(),           stage_->source(), layers_,        stage_->center(),  numbers_.generation,
@@ -120,6 +149,8 @@ bool Session::Implementation::pack_frame(MessageWriter& message) {
   const auto failure = failure_of([&] {
     packer_.pack(frame, message);
     field_.pack(*stage_, message);
+    measure_pins();
+    pins_.add_to(message);
   });
   if (!failure) return true;
   replies_.id.reset();

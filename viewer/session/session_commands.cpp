@@ -8,6 +8,7 @@
 #include "failure.hpp"
 #include "messages/answers.hpp"
 #include "object_arguments.hpp"
+#include "pins/pin_commands.hpp"
 #include "program/program_commands.hpp"
 #include "session_implementation.hpp"
 
@@ -39,6 +40,7 @@ const Session::Implementation::Command Session::Implementation::commands_[] = {
     {"read", &Implementation::read, true},
     {"node_pairs", &Implementation::node_pairs, true},
     {"break", &Implementation::set_breaks},
+    {"pins", &Implementation::pins},
     {"program", &Implementation::program},
 };
 
@@ -211,6 +213,7 @@ void Session::Implementation::change(const Settings& settings) {
 void Session::Implementation::follow_program() {
   ProgramSource& source = *stage_->program();
   for (const StepRow& row : source.program().take_rows()) packer_.add_step(row);
+  pins_.add(source.program().take_pin_rows());
   if (!stage_->is_open()) return;
   if (stage_->past() == nullptr) {
     if (auto changed = source.changed_view()) {
@@ -235,6 +238,7 @@ void Session::Implementation::restart(const Settings& settings) {
   player_.restart();
   keep_objects(layers_, scene().objects.size());
   packer_.restart();
+  pins_.restart();
   take_state();
   field_.restart();
   ++numbers_.run;
@@ -322,6 +326,17 @@ void Session::Implementation::set_breaks(Arguments& arguments) {
   if (!is_of_program(arguments)) return;
   const BreakOptions breaks = read_breaks(arguments);
   if (arguments.check()) stage_->program()->program().set_breaks(breaks);
+}
+
+/// The pins of a program are measured by its thread, in each step.
+void Session::Implementation::pins(Arguments& arguments) {
+  auto pins = read_pins(scene(), stage_->source(), arguments);
+  if (!pins) return;
+  if (ProgramSource* const source = stage_->program()) source->program().set_pins(*pins);
+  pins_.set(std::move(*pins));
+  if (stage_->program() != nullptr && stage_->is_open())
+    pins_.measure(stage_->source().scene(), stage_->source().step(), stage_->source().time());
+  has_news_ = true;
 }
 
 void Session::Implementation::program(Arguments& arguments) {

@@ -15,6 +15,7 @@
 #include "messages/json_value.hpp"
 #include "messages/message.hpp"
 #include "messages/scene_message.hpp"
+#include "pins/pin_rows.hpp"
 #include "replies.hpp"
 #include "session.hpp"
 #include "settings.hpp"
@@ -77,6 +78,7 @@ class Session::Implementation {
   void read(Arguments& arguments);
   void node_pairs(Arguments& arguments);
   void set_breaks(Arguments& arguments);
+  void pins(Arguments& arguments);
   void program(Arguments& arguments);
 
   const SceneView& scene() const { return stage_->show(); }
@@ -94,6 +96,7 @@ class Session::Implementation {
 
   void fail(const std::string& message, bool fatal = false, std::span<const std::string> layers = {});
   bool pack_frame(MessageWriter& message);
+  void measure_pins();
 
   SceneView show_;
   Settings settings_;
@@ -115,6 +118,7 @@ class Session::Implementation {
   FramePacker packer_;
   std::vector<FieldForm> fields_;  // that the last scene message offered
   FieldMaker field_;
+  PinRows pins_;
 };
 
 }  // namespace supple::viewer

@@ -72,14 +72,27 @@ inline constexpr std::array view_members = std::to_array<ViewMember>({
     {"field.range", ViewValue::interval, "the values at the ends of the colours; null for those of the frame"},
     {"field.arrow_length", ViewValue::number, "length of the longest arrow of a field of vectors in CSS pixels",
      ValueRange::above(0)},
+    {"marks.hover", ViewValue::truth, "whether the resting pointer shows values"},
     {"objects.*.visible", ViewValue::truth,
      "whether the objects of this name are visible; an object that is not listed is visible and opaque, and "
      "has its usual colour"},
     {"objects.*.colour", ViewValue::colour, "their colour"},
     {"objects.*.opacity", ViewValue::number, "their opacity", ValueRange::from(0, 1)},
     {"filter", ViewValue::text, "part of a name: the list of contacts shows only objects with it"},
-    {"tab", ViewValue::word, "open tab of the details", {}, "Inspect Contacts Curves Plots Settings"},
+    {"tab", ViewValue::word, "open tab of the details", {}, "Inspect Contacts Curves Pins Plots Settings"},
     {"panels", ViewValue::truth, "whether the panels are visible"},
+    {"views.layout", ViewValue::word, "number of views of the scene beside each other", {}, "one two four"},
+    {"views.cameras.*.position", ViewValue::point,
+     "of the views besides the first, which has `camera`; their names are `second`, `third` and `fourth`"},
+    {"views.cameras.*.target", ViewValue::point, "as `camera.target`"},
+    {"views.cameras.*.zoom", ViewValue::number, "as `camera.zoom`", ValueRange::above(0)},
+    {"views.cameras.*.orthographic", ViewValue::truth, "as `camera.orthographic`"},
+    {"pins.*.a", ViewValue::text,
+     "name of an object whose values are shown over time; pins are named 1, 2 and so on"},
+    {"pins.*.b", ViewValue::text, "name of the second object of a pair"},
+    {"pins.*.contact", ViewValue::text,
+     "only this contact of the pair: the first four numbers of its row in `contacts`, or seven of `impacts` "
+     "(docs/protocol.md), with spaces"},
 });
 
 /// What a value must be, in words: `a number from 0 to 1`.

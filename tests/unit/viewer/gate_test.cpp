@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -122,6 +125,37 @@ TEST_F(WatchedProgram, FrameIsTheResultOfTheProgram) {
   EXPECT_EQ(frames_[0].values<Pair>(33).size(), 0u) << "the pair filter of the program excludes the pair";
   EXPECT_TRUE(until([&] { return !is_running_; }));
   EXPECT_EQ(gate_->frame_count(), frames_.size());
+}
+
+TEST_F(WatchedProgram, PinsAreMeasuredInStepsWithoutAFrame) {
+  attach({.time_step = 0.5});
+  turn();
+  say({{"do", "pins"}, {"pins", {{{"pin", 4}, {"objects", {1}}}, {{"pin", 5}, {"objects", {0, 1}}}}}});
+  run(6);
+  ASSERT_TRUE(eventually([&] { return !is_running_; }));
+  EXPECT_TRUE(frames_.empty()) << "the page has given no credit";
+  say({{"do", "pause"}});
+  give_credit();
+  run(1);
+  ASSERT_TRUE(until([&] { return !frames_.empty(); }));
+  std::vector<std::string> names{"step", "time"};
+  for (const Json& value : scenes_[0].json["pin_values"]) names.push_back(value["key"]);
+  const auto values = frames_[0].values<double>(61, 4);
+  ASSERT_EQ(values.size(), 7 * names.size());
+  EXPECT_EQ(frames_[0].values<double>(61, 5).size(), values.size());
+  for (std::size_t step = 0; step < 7; ++step) {
+    const auto number = [&](const char* name) {
+      const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+      return values[step * names.size() + static_cast<std::size_t>(at)];
+    };
+    EXPECT_EQ(number("step"), step);
+    EXPECT_EQ(number("time"), 0.5 * static_cast<double>(step));
+    EXPECT_NEAR(number("displacement"), 0.1 * static_cast<double>(step + 1), 1e-9);
+    if (step == 0)
+      EXPECT_TRUE(std::isnan(number("speed")));
+    else
+      EXPECT_NEAR(number("speed"), 0.2, 1e-9);
+  }
 }
 
 TEST_F(WatchedProgram, BudgetLimitsFramesAndStatisticsHaveAllSteps) {

@@ -139,6 +139,36 @@ TEST(ViewerRecording, TellsSceneAndSeries) {
   EXPECT_EQ(series.section(67).count, 0u) << "without colliding vertices";
 }
 
+TEST(ViewerRecording, PinsHaveTheirSpeedInEachFrameThatIsVisited) {
+  const Recorded recorded = record(30);
+  TestPage page(recorded.show);
+  const std::vector<ViewerMessage> messages = opening(page);
+  const Json& names = messages[0].json["pin_values"];
+  std::size_t speed = 2;
+  while (names[speed - 2]["key"] != "speed") ++speed;
+  const auto mean = [&](std::uint32_t frame) {
+    const std::vector<Vec3d>& positions = recorded.frames->positions[frame][1];
+    Vec3d sum{};
+    for (const Vec3d& p : positions) sum = sum + p;
+    return (1.0 / static_cast<double>(positions.size())) * sum;
+  };
+  page.ask({{"do", "pins"}, {"pins", {{{"pin", 1}, {"objects", {1}}}}}});
+  for (const std::uint32_t number : {12u, 3u, 4u, 29u}) {
+    page.ask({{"do", "seek"}, {"frame", number}});
+    page.session.advance(0);
+    const auto row = page.frame().values<double>(61, 1);
+    ASSERT_EQ(row.size(), 2 + names.size());
+    EXPECT_EQ(row[0], number);
+    const double time =
+        recorded.frames->rows.values[2 * number] - recorded.frames->rows.values[2 * number - 2];
+    EXPECT_NEAR(row[speed], norm(mean(number) - mean(number - 1)) / time, 1e-9);
+  }
+  recorded.frames->damaged = {19};
+  page.ask({{"do", "seek"}, {"frame", 20}});
+  page.session.advance(0);
+  EXPECT_TRUE(std::isnan(page.frame().values<double>(61, 1)[speed])) << "the frame before cannot be read";
+}
+
 TEST(ViewerRecording, EachFrameIsDetectedAsItWas) {
   const Recorded recorded = record(60);
   TestPage page(recorded.show);

@@ -121,7 +121,7 @@ async function isFoundByName(stage) {
   assert.equal(hidden.length, 1 + 10 + 100);  // ball 12, 120 …, 1200 …
   assert.ok(hidden.every((name) => name.startsWith("ball 12")));
   await page.getByRole("searchbox", { name: "Filter objects" }).fill("no such");
-  await page.getByText("No object has “no such” in its name.").waitFor();
+  await page.getByText("No object is like “no such”.").waitFor();
   assert.equal(await list(page).getByRole("listitem").count(), 0);
 }
 

@@ -1,6 +1,7 @@
-// Looking inside: a slice with caps, one object alone, and another point to turn around.
+// Looking inside: a slice with caps, one object alone, another point to turn around, values below the pointer, several views.
 import assert from "node:assert/strict";
-import { camera, coloursAt, pause, picture, settled } from "./harness.mjs";
+import { join } from "node:path";
+import { camera, coloursAt, hasFrame, pause, picture, scenes, seenTriangle, settled, TWO_BALLS, until } from "./harness.mjs";
 
 const ball = (name, x, more = "") => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 12\ntranslate = [${x}, 0, 0]\n${more}\n`;
 const [CUT, OVERLAP] = [[0x8d, 0x96, 0xa3], [0xc1, 0x12, 0x1f]];
@@ -80,8 +81,238 @@ async function doubleClickSetsThePivot(stage) {
   away(after).forEach((x, axis) => assert.ok(Math.abs(x - away(before)[axis]) < 1e-6, "the camera comes no nearer"));
 }
 
+const nine = join(scenes, "nine.toml");
+const tooltip = (page) => page.getByRole("tooltip");
+const row = (page, name) => tooltip(page).locator(`dt:text-is("${name}") + dd`).textContent();
+
+async function surfaceShowsItsValues(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
+  const seen = await seenTriangle(page, 0);
+  await page.mouse.move(seen.x, seen.y);
+  await tooltip(page).waitFor();
+  assert.equal(await tooltip(page).locator("strong").textContent(), "left");
+  assert.equal(await row(page, "triangle"), String(seen.triangle));
+  const corners = await page.evaluate(({ object, triangle }) => [...supple.model.objects[object].corners.subarray(3 * triangle, 3 * triangle + 3)].map(String), seen);
+  assert.ok(corners.includes(await row(page, "vertex")));
+  const middle = await page.evaluate(({ object, triangle }) => supple.centroid(object, triangle).map((x, i) => x + supple.model.scene.center[i]), seen);
+  (await row(page, "at")).split(", ").map(Number).forEach((x, i) => assert.ok(Math.abs(x - middle[i]) < 0.01, `${x} is not ${middle[i]}`));
+  const box = await tooltip(page).boundingBox();
+  assert.ok(box.x > seen.x && box.y > seen.y, "it covers what it describes");
+  await page.mouse.move(seen.x, 120);  // the ground
+  await tooltip(page).waitFor({ state: "hidden" });
+
+  await page.getByRole("checkbox", { name: "Values at pointer" }).uncheck();
+  await page.mouse.move(seen.x, seen.y);
+  await page.waitForTimeout(400);
+  assert.equal(await tooltip(page).isVisible(), false);
+}
+
+/** Gaps, depths and contacts are found before the surface that they are on. */
+async function marksShowTheirValues(stage) {
+  const ball = (name, x) => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, 0, 0]\nmargin = 0.05\nsolid = true\n`;
+  const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "proximity,penetration"\n${ball("one", 0)}${ball("two", 1.9)}${ball("three", 3.95)}`));
+  await until(page, () => supple.model.frame.proximityPairs.length > 4 && supple.model.frame.penetrations.length > 4);
+  await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
+  await settled(page);
+  const rests = async (kind, list, offset) => {
+    const at = await page.evaluate(([list, offset]) => supple.project([...supple.model.frame[list].subarray(offset, offset + 3)]), [list, offset]);
+    await page.mouse.move(at.x - 60, 130);
+    await page.mouse.move(at.x, at.y);
+    await until(page, (kind) => document.querySelector(".hover:not([hidden])")?.textContent.includes(kind), kind);
+  };
+  for (const label of ["Depths", "Curves", "Contact points"]) await page.getByRole("checkbox", { name: label }).uncheck();
+  await rests("near", "proximityPoints", 0);
+  const gaps = await page.evaluate(() => Array.from({ length: supple.model.frame.proximityPoints.length / 8 }, (_, i) => supple.model.frame.proximityPoints[8 * i + 3]));
+  const gap = Number(await row(page, "gap"));
+  assert.ok(gaps.some((value) => Math.abs(value - gap) < 1e-4 * value), `${gap} is not a gap`);
+  await page.getByRole("checkbox", { name: "Proximity pairs" }).uncheck();
+  await page.getByRole("checkbox", { name: "Depths" }).check();
+  await rests("vertex inside", "penetrationPoints", 0);
+  const depths = await page.evaluate(() => Array.from({ length: supple.model.frame.penetrationPoints.length / 8 }, (_, i) => supple.model.frame.penetrationPoints[8 * i + 3]));
+  const depth = Number(await row(page, "depth"));
+  assert.ok(depths.some((value) => Math.abs(value - depth) < 1e-4 * value), `${depth} is not a depth`);
+  await page.getByRole("checkbox", { name: "Depths" }).uncheck();
+  await page.getByRole("checkbox", { name: "Contact points" }).check();
+  await rests("Contact: ", "contactPoints", 0);
+  const length = Math.hypot(...(await row(page, "normal")).split(", ").map(Number));
+  assert.ok(Math.abs(length - 1) < 0.01);
+  assert.match(await row(page, "one"), /^triangle \d+$/);
+}
+
+/** A finger that stays shows the values; they stay until the next touch. */
+async function longPressShowsValues(stage) {
+  const program = await stage.program(stage.file("balls.toml", TWO_BALLS));
+  const page = await stage.page({ viewport: { width: 390, height: 800 }, hasTouch: true });
+  await page.goto(program.address);
+  await hasFrame(page);
+  await settled(page);
+  const { x, y } = await seenTriangle(page, 1);
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, points) => client.send("Input.dispatchTouchEvent", { type, touchPoints: points });
+  await touch("touchStart", [{ x, y }]);
+  await tooltip(page).getByText("right", { exact: true }).waitFor();
+  await touch("touchEnd", []);
+  await page.waitForTimeout(300);
+  assert.ok(await tooltip(page).isVisible());
+  const box = await tooltip(page).boundingBox();
+  assert.ok(box.x >= 0 && box.x + box.width <= 390, "it leaves the window");
+  await page.touchscreen.tap(x, 60 + (await page.locator("canvas.view").boundingBox()).y);
+  await tooltip(page).waitFor({ state: "hidden" });
+}
+
+const cameras = (page) => page.evaluate(() => supple.cameras());
+const box = (page) => page.locator("canvas.view").boundingBox();
+/** The middle of a quarter of the canvas. */
+const quarter = ({ x, y, width, height }, i) => ({ x: x + width * (i % 2 ? 0.75 : 0.25), y: y + height * (i > 1 ? 0.75 : 0.25) });
+
+async function viewsHaveTheirCameras(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
+  const one = await camera(page);
+  const more = page.getByRole("button", { name: "One, two or four views" });
+  await more.click();
+  assert.equal((await cameras(page)).length, 2);
+  await more.click();
+  await settled(page);
+  const before = await cameras(page);
+  assert.equal(before.length, 4);
+  assert.deepEqual(before[0].position, one.position);
+  assert.deepEqual(before.map(({ orthographic }) => orthographic), [false, true, true, true]);
+  const along = before.slice(1).map(({ position, target }) => position.map((x, axis) => Math.round((x - target[axis]) / Math.hypot(...position.map((p, i) => p - target[i])))));
+  assert.deepEqual(along, [[0, 0, 1], [1, 0, 0], [0, 1, 0]]);
+
+  // Each view takes the pointer: its camera alone moves, and it becomes the active one.
+  const canvas = await box(page);
+  for (const i of [1, 2, 3]) {
+    const at = quarter(canvas, i);
+    await page.mouse.move(at.x + 60, at.y + 60);
+    await page.mouse.down();
+    await page.mouse.move(at.x + 100, at.y + 70, { steps: 4 });
+    await page.mouse.up();
+    const now = await cameras(page);
+    assert.notDeepEqual(now[i].position, before[i].position, `view ${i} does not turn`);
+    before[i] = now[i];
+    assert.deepEqual(now, before, `others turn with view ${i}`);
+  }
+  assert.equal(await page.getByRole("img", { name: "3D view, 4 of 4 is active" }).count(), 1);
+  await page.keyboard.press("z");
+  assert.equal(await page.getByRole("img", { name: "3D view, 1 of 4 is active" }).count(), 1);
+  await page.keyboard.press("z");
+  await page.keyboard.press("o");
+  await page.keyboard.press("2");
+  const now = await cameras(page);
+  assert.deepEqual([now[0], now[2], now[3]], [before[0], before[2], before[3]]);
+  assert.equal(now[1].orthographic, false);
+  assert.ok(now[1].position[2] < now[1].target[2], "it looks from the back");
+
+  // The wheel zooms where it is.
+  const at = quarter(canvas, 2);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.wheel(0, -400);
+  await until(page, (zoom) => supple.cameras()[2].zoom > 1.05 * zoom, now[2].zoom);
+
+  const kept = await cameras(page);
+  await page.reload();
+  await hasFrame(page);
+  await settled(page);
+  const restored = await cameras(page);
+  assert.equal(restored.length, 4);
+  restored.forEach(({ position }, i) => position.forEach((x, axis) => assert.ok(Math.abs(x - kept[i].position[axis]) < 1e-5, `camera ${i} is at ${position}, not ${kept[i].position}`)));
+}
+
+/** Objects are picked, and the view turns around a point, where they are in each view. */
+async function viewsArePicked(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  await settled(page);
+  for (let i = 0; i < 2; ++i) await page.keyboard.press("q");
+  await settled(page);
+  for (let i = 0; i < 4; ++i) {
+    // The middle of a ball; from the right, the left one is hidden.
+    const seen = await page.evaluate((object) => {
+      const { positions } = supple.model.objects[object];
+      const middle = [0, 1, 2].map((axis) => positions.filter((_, k) => k % 3 === axis).reduce((sum, x) => sum + x, 0) / (positions.length / 3));
+      const { x, y } = supple.project(middle);
+      const at = { x: Math.round(x), y: Math.round(y) };
+      return { ...at, ...supple.pickAt(at.x, at.y) };
+    }, i === 2 ? 1 : 0);
+    assert.equal(seen.object, i === 2 ? 1 : 0);
+    const area = await page.locator(".panes > div").boundingBox();
+    assert.ok(seen.x > area.x && seen.x < area.x + area.width && seen.y > area.y && seen.y < area.y + area.height, `${seen.x}, ${seen.y} is not in view ${i}`);
+    await page.mouse.click(seen.x, seen.y);
+    assert.deepEqual(await page.evaluate(() => [supple.model.selection.object, supple.model.selection.triangle]), [seen.object, seen.triangle]);
+    await page.mouse.dblclick(seen.x, seen.y);
+    const { target } = await camera(page);
+    assert.ok(Math.hypot(...target.map((x, axis) => x - seen.point[axis])) < 1e-5, `view ${i} turns around ${target}, not ${seen.point}`);
+    await page.keyboard.press("z");
+  }
+  // All views show the selection, and the picture has lines between them.
+  await settled(page);
+  const before = await picture(page);
+  await page.keyboard.press("Escape");
+  await settled(page);
+  assert.notEqual(await picture(page), before);
+}
+
+/** Positions go to the graphics card once, however many views show them. */
+async function viewsShareTheirData(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.contacts.length > 200);
+  await pause(page);
+  const drawn = () => page.evaluate(() => {
+    let bytes = 0;
+    const { bufferSubData } = WebGL2RenderingContext.prototype;
+    WebGL2RenderingContext.prototype.bufferSubData = function (target, offset, data, from, length) {
+      bytes += 4 * (length ?? data.length);
+      return bufferSubData.apply(this, arguments);
+    };
+    supple.touch();
+    supple.draw();
+    WebGL2RenderingContext.prototype.bufferSubData = bufferSubData;
+    return { bytes, calls: supple.drawn().calls };
+  });
+  for (const label of ["Contact points", "Contact segments", "Intersecting triangles"]) await page.getByRole("checkbox", { name: label }).uncheck();
+  await settled(page);
+  await drawn();
+  const one = await drawn();
+  for (let i = 0; i < 2; ++i) await page.keyboard.press("q");
+  await settled(page);
+  const four = await drawn();
+  assert.ok(one.bytes > 10_000, `${one.bytes} bytes are uploaded`);
+  assert.equal(four.bytes, one.bytes);
+  assert.ok(four.calls > 3 * one.calls, `${four.calls} calls`);
+}
+
+/** Below each other where the window is narrow. Each view shows the scene. */
+async function viewsInANarrowWindow(stage) {
+  const program = await stage.program(stage.file("balls.toml", TWO_BALLS));
+  for (const [width, height] of [[390, 800], [800, 600]]) {
+    const page = await stage.page({ viewport: { width, height }, hasTouch: true, colorScheme: "light" });
+    await page.goto(program.address);
+    await hasFrame(page);
+    await page.getByRole("button", { name: "One, two or four views" }).tap();
+    await settled(page);
+    const canvas = await box(page);
+    const isStacked = canvas.height > canvas.width;
+    const second = isStacked ? { x: canvas.x + canvas.width / 2, y: canvas.y + 0.75 * canvas.height } : { x: canvas.x + 0.75 * canvas.width, y: canvas.y + canvas.height / 2 };
+    await page.touchscreen.tap(second.x, second.y);
+    await page.getByRole("img", { name: "3D view, 2 of 2 is active" }).waitFor();
+    const seen = await seenTriangle(page, 0);
+    await page.touchscreen.tap(seen.x, seen.y);
+    await until(page, () => supple.model.selection?.object === 0);
+    await page.close();
+  }
+}
+
 export const tests = [
   ["a slice has caps", sliceHasCaps],
   ["one object alone", oneObjectAlone],
   ["a double click sets the pivot", doubleClickSetsThePivot],
+  ["a resting pointer shows the values of a surface", surfaceShowsItsValues],
+  ["a resting pointer shows gap, depth and normal of marks", marksShowTheirValues],
+  ["a long press shows values", longPressShowsValues],
+  ["several views have their cameras", viewsHaveTheirCameras],
+  ["several views are picked", viewsArePicked],
+  ["several views share their data", viewsShareTheirData],
+  ["several views in narrow windows", viewsInANarrowWindow],
 ];

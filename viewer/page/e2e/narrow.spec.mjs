@@ -7,7 +7,7 @@ import { pause, scenes, settled, until } from "./harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const TABS = ["Inspect", "Contacts", "Curves", "Plots", "Settings"];
+const TABS = ["Inspect", "Contacts", "Curves", "Pins", "Plots", "Settings"];
 
 async function open(stage, options) {
   const program = await stage.program(nine);
@@ -127,6 +127,7 @@ async function accessible(stage) {
     for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 800 }]) {
       const page = await open(stage, { viewport, colorScheme });
       await page.evaluate(axe);
+      await page.evaluate(() => supple.pins.add([0, 1]));
       const check = async (place) => {
         const found = await page.evaluate(async () => {
           const { violations } = await window.axe.run(document, { resultTypes: ["violations"] });
@@ -149,6 +150,7 @@ async function accessible(stage) {
         await settled(page);
         await check(name);
       }
+      if (isNarrow) await page.getByRole("button", { name: "Close Details" }).click();
       await page.keyboard.press("Shift+P");
       const dialog = page.getByRole("dialog", { name: "Save frames as pictures" });
       await dialog.getByRole("combobox", { name: "Size" }).selectOption({ label: "Own size" });
@@ -156,6 +158,9 @@ async function accessible(stage) {
       await check("dialog of frames");
       const inside = await dialog.evaluate((element) => element.scrollWidth <= element.clientWidth);
       assert.ok(inside, `the dialog is wider than its box, ${viewport.width}`);
+      await page.keyboard.press("Escape");
+      await page.keyboard.press("Control+k");
+      await check("palette");
     }
   }
 }

@@ -1,7 +1,8 @@
 // The page alone: camera, keys, pictures, videos, appearance, and error messages.
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
+import { chmodSync, existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
+import { pathToFileURL } from "node:url";
 import { camera, hasFrame, pageWithMessages, pause, picture, scenes, settled, step, textMessage, TWO_BALLS, until } from "./harness.mjs";
 
 const nine = join(scenes, "nine.toml");
@@ -379,6 +380,23 @@ async function emptyScene(stage) {
   assert.equal(await page.evaluate(() => supple.model.objects[0].triangles), 0);
 }
 
+/**
+ * The browser that the program opens gets a file instead of the address. The file leads to the page and does not reveal the token
+ * to others.
+ */
+async function isLedToThePage(stage) {
+  const opener = stage.file("xdg-open", `#!/bin/sh\nprintf '%s' "$*" > "$0.part"; mv "$0.part" "$0.asked"\n`);
+  chmodSync(opener, 0o755);
+  const scene = stage.file("balls.toml", TWO_BALLS);
+  const program = await stage.programIn({ PATH: `${stage.folder}:${process.env.PATH}`, DISPLAY: ":0", XDG_RUNTIME_DIR: stage.folder }, scene);
+  while (!existsSync(`${opener}.asked`)) await new Promise((done) => setTimeout(done, 20));
+  const page = await stage.page();
+  await page.goto(pathToFileURL(readFileSync(`${opener}.asked`, "utf8")).href);
+  await page.waitForURL(program.address);
+  await hasFrame(page);
+  assert.equal(await page.evaluate(() => document.referrer), "");
+}
+
 export const tests = [
   ["orbits, pans and zooms to the cursor", cameraMoves],
   ["axis views, orthographic, and the view in the address", viewsAndAddress],
@@ -401,4 +419,5 @@ export const tests = [
   ["a lost picture", lostContext],
   ["a wrong token", wrongToken],
   ["a mesh without triangles", emptyScene],
+  ["a browser is led to it by a file", isLedToThePage],
 ];

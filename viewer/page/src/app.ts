@@ -5,25 +5,35 @@ import { Film } from "./capture/film";
 import { FramesRun } from "./capture/frames";
 import { embeddedJob, failJob, runJob } from "./capture/job";
 import { savePicture } from "./capture/picture";
+import { commandsOf } from "./commands";
 import { listenToKeys } from "./keyboard";
 import { Model, TOOLS, type Layer, type Tool } from "./model";
-import { ContactTable } from "./panels/contact_table";
+import { ComparisonPanel } from "./panels/comparison";
+import { ContactTable } from "./panels/tables/contact_table";
 import { colourOf, h, icon, iconButton, setIcon } from "./panels/dom";
 import { FramesDialog } from "./panels/frames_dialog";
 import { helpSheet } from "./panels/help";
+import { Hover } from "./panels/hover";
 import { Inspector } from "./panels/inspector";
 import { NodePairs } from "./panels/node_pairs";
 import { Card, Notices } from "./panels/notices";
-import { CurveTable } from "./panels/curve_table";
+import { CurveTable } from "./panels/tables/curve_table";
+import { offersOfObject, offersOfTabs } from "./panels/offers";
+import { offersOf, Palette } from "./panels/palette";
+import { PaneFrames } from "./panels/pane_frames";
+import { PinTable } from "./panels/tables/pin_table";
 import { Player } from "./panels/player";
 import { Program } from "./panels/program";
 import { Plots } from "./panels/plots";
 import { LAYER_ROWS, ScenePanel } from "./panels/scene_panel";
 import { Settings } from "./panels/settings";
+import { Pins, type Pin } from "./pins";
+import { Tabs } from "./panels/tabs";
 import { Tools } from "./tools";
 import { openSocket } from "./transport/socket";
 import { hasCargo, openWorker } from "./transport/worker";
 import { AXIS_VIEWS, type AxisView } from "./view/camera";
+import { layoutOf } from "./view/panes";
 import { SceneView } from "./view/scene_view";
 import { applyCamera, MOST_STORED, showView, viewOf, type ViewState } from "./view_state";
 import { firstView } from "./views/first_view";
@@ -58,11 +68,14 @@ export class App {
   client!: Client;
   player!: Player;
   tools!: Tools;
-  readonly help = helpSheet();
+  help!: HTMLDialogElement;
+  palette!: Palette;
+  pins!: Pins;
   readonly notices = new Notices();
   readonly card = new Card(() => this.client.connect(), this.carriesLibrary);
   private scenePanel!: ScenePanel;
   private plots!: Plots;
+  private pinTable!: PinTable;
   private framesDialog!: FramesDialog;
   private readonly colourBar = new ColourBar(this.model);
   private readonly film_ = new Film();
@@ -75,8 +88,7 @@ export class App {
   private readonly toolButtons = new Map<Tool, HTMLButtonElement>();
   /** Frames of the last second: when each came, and its simulated time. */
   private arrivals: { at: number; time: number }[] = [];
-  private openTab: (name: string) => void = () => {};
-  private tab = "";
+  private tabs!: Tabs;
   private hasDrawn = false;  // a frame of the present scene
   private hasRestored = false;
   /** Set in a page that draws for `supple render`. */
@@ -119,28 +131,47 @@ export class App {
     const { model, view } = this;
     this.client = new Client(model, this.carriesLibrary ? openWorker : openSocket, (objects) => view.obstacle(objects));
     const fly = () => view.frameSelection();
-    const inspector = new Inspector(model, this.client, fly);
+    this.pins = new Pins(model, (command) => this.client.send(command), (text) => this.notices.show(text));
+    const inspector = new Inspector(model, this.client, this.pins, fly);
     this.scenePanel = new ScenePanel(model, fly);
     this.player = new Player(model, this.client);
     this.tools = new Tools(model, this.client, view, inspector);
     this.tools.onPick = () => this.openTab("Inspect");
     this.plots = new Plots(model, (frame) => this.player.seek(frame));
+    this.pinTable = new PinTable(model, this.pins, (pin) => this.showPin(pin), (step) => this.player.seek(step));
+    this.pins.on("list", (pin) => pin && this.openTab("Pins"));
     const program = new Program(model, this.client, (point, reach) => view.flyTo(point, reach));
     this.framesDialog = new FramesDialog(
       model, view, (plan, signal, progress) => new FramesRun(model, this.client, view, plan, signal, progress).go(), (text) => this.notices.show(text),
     );
     this.views = new Views(model, this.client, { view: () => this.viewState(), apply: (state) => this.applyView(state), say: (text) => this.notices.show(text) });
+    this.scenePanel.element.firstElementChild!.after(new ComparisonPanel(model, (frame) => this.player.seek(frame)).element);
     this.scenePanel.element.append(this.views.element);
-    const details = this.tabs({
+    this.tabs = new Tabs({
       Inspect: h("div", {}, inspector.element, new NodePairs(model, this.client).element),
-      Contacts: new ContactTable(model, (point, reach) => view.flyTo(point, reach)).element,
+      Contacts: new ContactTable(model, this.pins, (point, reach) => view.flyTo(point, reach)).element,
       Curves: new CurveTable(model, (point, reach) => view.flyTo(point, reach)).element,
+      Pins: this.pinTable.element,
       Plots: this.plots.element,
       Settings: h("div", {}, program.element, new Settings(model, this.client).element),
-    });
+    }, "Details");
+    const details = this.tabs.element;
+    this.openTab("Contacts");
     this.drawers = [this.drawer("scene", "Scene", this.scenePanel.element), this.drawer("details", "Details", details)];
-    this.body.append(this.header(), program.banner, this.scenePanel.element, details, this.player.element, this.help, this.framesDialog.element, this.views.dialog);
-    listenToKeys(this);
+    const commands = commandsOf(this);
+    this.help = helpSheet(commands);
+    this.palette = new Palette(model, () => [...offersOf(commands), ...offersOfTabs(this, this.tabs.names)], (object) => offersOfObject(this, object));
+    const frames = new PaneFrames(this.canvas, view.panes);
+    view.panes.onChange = () => {
+      frames.update();
+      this.showProjection();
+    };
+    const hover = new Hover(this.canvas, model, view.pointing);
+    this.body.append(
+      this.header(), program.banner, this.scenePanel.element, details, this.player.element, this.help, this.framesDialog.element, this.views.dialog,
+      this.palette.element, frames.element, hover.element,
+    );
+    listenToKeys(commands);
   }
 
   /** In a narrow window a panel is a drawer that this button opens and closes. */
@@ -183,10 +214,12 @@ export class App {
       h("div", { class: "group tools", role: "radiogroup", "aria-label": "Tool" }, ...tools),
       h("div", { class: "group" },
         iconButton("frame", "Frame all", "F", () => this.view.frameAll()), views, this.orthoButton,
+        iconButton("panes", "One, two or four views", "Q", () => this.view.nextLayout()),
         iconButton("camera", "Save a picture", "Shift+S", () => this.picture()), this.filmButton,
         iconButton("frames", "Save frames as pictures…", "Shift+P", () => this.frames()),
         iconButton("panels", "Hide or show the panels", "H", () => this.togglePanels()),
         iconButton("theme", "Light or dark", "T", () => this.toggleTheme()),
+        iconButton("search", "Command palette", "Ctrl+K", () => this.palette.open()),
         h("button", { type: "button", class: "icon", "aria-label": "Keyboard shortcuts", title: "Keyboard shortcuts (?)", onclick: () => this.help.showModal() }, "?")),
     );
     // After a click the keys belong to the view again. Keys and dialogs keep the focus.
@@ -196,38 +229,13 @@ export class App {
     return header;
   }
 
+  private openTab(name: string): void {
+    this.tabs.show(name);
+  }
+
   private axisView(views: HTMLSelectElement): void {
     if (views.value !== "") this.view.rig.lookAlong(views.value as AxisView);
     views.value = "";
-  }
-
-  private tabs(pages: Record<string, HTMLElement>): HTMLElement {
-    const names = Object.keys(pages);
-    const buttons = names.map((name) =>
-      h("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `page-${name}`, onclick: () => this.openTab(name) }, name),
-    );
-    const panels = names.map((name) => h("div", { role: "tabpanel", tabindex: 0, id: `page-${name}`, "aria-labelledby": `tab-${name}`, class: "page" }, pages[name]!));
-    this.openTab = (wanted) => {
-      this.tab = wanted;
-      names.forEach((name, i) => {
-        panels[i]!.hidden = name !== wanted;
-        buttons[i]!.setAttribute("aria-selected", String(name === wanted));
-        buttons[i]!.tabIndex = name === wanted ? 0 : -1;
-      });
-    };
-    const bar = h("div", { class: "tabs", role: "tablist", "aria-label": "Details" }, ...buttons);
-    bar.addEventListener("keydown", (event) => {
-      const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
-      if (step === 0) return;
-      event.preventDefault();
-      event.stopPropagation();
-      const at = buttons.findIndex((button) => button.getAttribute("aria-selected") === "true");
-      const next = buttons[(at + step + buttons.length) % buttons.length]!;
-      next.click();
-      next.focus();
-    });
-    this.openTab("Contacts");
-    return h("aside", { class: "panel right", "aria-label": "Details" }, bar, ...panels);
   }
 
   private listen(): void {
@@ -285,11 +293,16 @@ export class App {
   }
 
   private applyView(view: Partial<ViewState>, withCamera = true): void {
-    const { model, view: { rig } } = this;
+    const { model } = this;
     showView(model, view);
     model.emit("display", null);  // a change of the upward axis turns the camera
     model.emit("request", null);
-    if (withCamera) applyCamera(rig, view.camera ?? {});
+    const { panes } = this.view;
+    panes.activate(panes.shown[0]!);
+    if (withCamera) applyCamera(panes.active.rig, view.camera ?? {});
+    if (view.views?.layout) this.view.setLayout(layoutOf(view.views.layout));
+    if (view.views?.cameras) panes.placeCameras(view.views.cameras);
+    if (view.pins) this.pins.restore(view.pins);
     this.showProjection();
     if (view.tab) this.openTab(view.tab);
     if (view.panels !== undefined) this.body.classList.toggle("bare", !view.panels);
@@ -304,7 +317,8 @@ export class App {
   }
 
   private viewState(most?: number): ViewState {
-    return viewOf(this.model, this.view.rig, { tab: this.tab, panels: !this.body.classList.contains("bare") }, most);
+    const page = { tab: this.tabs.open, panels: !this.body.classList.contains("bare"), views: this.view.panes.stored, pins: this.pins.stored };
+    return viewOf(this.model, this.view.panes.rigs[0]!, page, most);
   }
 
   private storeView(): void {
@@ -365,6 +379,19 @@ export class App {
     setIcon(this.orthoButton, on ? "ortho" : "perspective", on ? "Perspective" : "Orthographic", "O");
   }
 
+  /** Opens a tab, also where the details are a drawer. */
+  showTab(name: string): void {
+    this.openTab(name);
+    this.body.classList.remove("bare");
+    if (this.drawers.some((button) => button.offsetParent !== null)) this.openDrawer("details");
+  }
+
+  private showPin({ objects, contact }: Pin): void {
+    if (contact) this.model.selectContact(contact);
+    else this.model.select({ object: objects[0]!, triangle: null, vertex: null });
+    this.view.frameSelection();
+  }
+
   togglePanels(): void {
     this.body.classList.toggle("bare");
   }
@@ -395,9 +422,10 @@ export class App {
 
   /** Copies the colours of the theme to elements that style sheets do not reach. */
   private paint(): void {
-    this.view.setColours(colourOf("--ground"), colourOf("--ink"));
+    this.view.setColours(colourOf("--ground"), colourOf("--ink"), colourOf("--line"));
     this.plots.rebuild();
     this.colourBar.update();
+    this.pinTable.rebuild();
   }
 
   /** For the end-to-end tests only. */
@@ -405,15 +433,16 @@ export class App {
     const { model, view, client, player } = this;
     Object.assign(window, {
       supple: {
-        model, client,
+        model, client, pins: this.pins,
         get status() { return client.status; },
         get playing() { return player.playing; },
         counts: () => view.layers.counts(),
-        project: (point: number[]) => view.project(point),
+        project: (point: number[]) => view.pointing.project(point),
         positionOf: (object: number, vertex: number) => view.positionOf(object, vertex),
         centroid: (object: number, triangle: number) => view.centroid(object, triangle),
-        pickAt: (x: number, y: number) => view.pickAt(x, y),
+        pickAt: (x: number, y: number) => view.pointing.pickAt(x, y),
         camera: () => ({ position: view.rig.camera.position.toArray(), target: view.rig.controls.target.toArray(), zoom: view.rig.camera.zoom, orthographic: view.rig.isOrthographic }),
+        cameras: () => view.panes.shown.map(({ rig }) => rig.state),
         drawTimes: () => [...view.times],
         drawn: () => view.statistics(),
         get isUpToDate() { return view.isUpToDate; },

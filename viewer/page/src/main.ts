@@ -6,6 +6,7 @@ import "./styles/details.css";
 import "./styles/messages.css";
 import "./styles/program.css";
 import "./styles/fields.css";
+import "./styles/look.css";
 import "./styles/narrow.css";  // the last one, because it changes the layout of the others
 import { App } from "./app";
 import { h } from "./panels/dom";

@@ -206,6 +206,8 @@ export class Model extends Emitter<ModelEvents> {
   sliceFlipped = false;
   /** The upward axis. */
   up: "y" | "z" = "y";
+  /** Whether the resting pointer shows values. */
+  hover = true;
   pointSize = 5;
   normalLength = 24;  // in CSS pixels
   /** Part of the names of objects: the list of contacts has only objects with it. */

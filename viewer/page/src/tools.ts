@@ -47,7 +47,7 @@ export class Tools {
     if (event.button !== 0) return;
     this.pressed = { x: event.clientX, y: event.clientY };
     if (this.model.tool !== "grab") return;
-    const hit = this.view.pickAt(event.clientX, event.clientY);
+    const hit = this.view.pointing.pickAt(event.clientX, event.clientY);
     if (!hit) return;
     this.model.select({ object: hit.object, triangle: null, vertex: hit.vertex });
     this.grab(hit.object, hit.vertex);
@@ -57,7 +57,7 @@ export class Tools {
 
   private move(event: PointerEvent): void {
     if (!this.grip || !this.pressed) return;
-    const to = this.view.pointAt(event.clientX, event.clientY, this.grip.start);
+    const to = this.view.pointing.pointAt(event.clientX, event.clientY, this.grip.start);
     if (to) this.pullTo([to.x, to.y, to.z]);
   }
 
@@ -75,18 +75,18 @@ export class Tools {
   private click(x: number, y: number): void {
     if (this.model.tool === "explain") return this.pickForExplanation(x, y);
     const { frame } = this.model;
-    const place = this.view.contactAt(x, y);
+    const place = this.view.pointing.contactAt(x, y);
     if (frame && place >= 0) {
       this.model.selectContact(keyAt(frame, place));
       return this.onPick();
     }
-    const hit = this.view.pickAt(x, y);
+    const hit = this.view.pointing.pickAt(x, y);
     this.model.select(hit ? { object: hit.object, triangle: hit.triangle, vertex: hit.vertex } : null);
     if (hit) this.onPick();
   }
 
   private pickForExplanation(x: number, y: number): void {
-    const hit = this.view.pickAt(x, y);
+    const hit = this.view.pointing.pickAt(x, y);
     if (!hit) return;
     const { explained } = this.model;
     const next = { object: hit.object, triangle: hit.triangle };

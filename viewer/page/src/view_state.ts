@@ -5,12 +5,14 @@
  */
 import type { MapName } from "./fields/colour_maps";
 import { LAYERS, usualLook, type Layer, type Model, type NodeChoice } from "./model";
+import type { StoredPin } from "./pins";
 import type { CameraRig, CameraState } from "./view/camera";
+import type { StoredPanes } from "./view/panes";
 
 /** Members of the model that are part of a view, by their names in a view. */
 const MARKS = {
   through_surfaces: "throughSurfaces", point_size: "pointSize", normal_length: "normalLength", smooth: "smooth", occlusion: "occlusion",
-  xray: "xray", slice: "slice", slice_at: "sliceAt", slice_flipped: "sliceFlipped", up: "up",
+  xray: "xray", slice: "slice", slice_at: "sliceAt", slice_flipped: "sliceFlipped", up: "up", hover: "hover",
 } as const satisfies Record<string, keyof Model>;
 type Marks = { [Name in keyof typeof MARKS]: Model[(typeof MARKS)[Name]] };
 
@@ -29,6 +31,8 @@ export interface ViewState {
   filter: string;
   tab: string;
   panels: boolean;
+  views: Partial<StoredPanes>;
+  pins: Record<string, StoredPin>;
 }
 
 interface ObjectLook {
@@ -40,7 +44,7 @@ interface ObjectLook {
 /** More objects than these are not stored by the browser, which keeps a few megabytes for each site. */
 export const MOST_STORED = 2000;
 
-export function viewOf(model: Model, rig: CameraRig, page: Pick<ViewState, "tab" | "panels">, most = Infinity): ViewState {
+export function viewOf(model: Model, rig: CameraRig, page: Pick<ViewState, "tab" | "panels" | "views" | "pins">, most = Infinity): ViewState {
   const objects = model.objects.slice(0, most).filter(({ index, visible, opacity, colour }) => {
     const usual = usualLook(model.scene!, index);
     return !visible || opacity !== usual.opacity || colour !== usual.colour;

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { RowScale } from "../src/panels/row_window";
+import { RowScale } from "../src/panels/tables/row_window";
 
 test("few rows are where the scroll bar says", () => {
   const scale = new RowScale(100, 24, 250);

@@ -9,7 +9,10 @@ const VIEW: ViewState = {
   version: 1, camera: { position: [1, 2, 3], target: [0, 0, 0.5], zoom: 1.5, orthographic: true },
   layers: { wireframe: true }, octree: { only_selected: false, level: -1 }, nodes: { objects: [0, 1], level: -2 },
   marks: { slice: "x", slice_at: 0.25, up: "z" }, objects: { "a.obj": { visible: false, colour: "#8ECAE6", opacity: 0 } },
-  field: { key: "speed", map: "magma", range: [0, 2], arrow_length: 50 }, filter: "a", tab: "Plots", panels: false,
+  field: { key: "speed", map: "magma", range: [0, 2], arrow_length: 50 },
+  filter: "a", tab: "Pins", panels: false,
+  views: { layout: "two", cameras: { second: { position: [0, 0, 2], target: [0, 0, 0], zoom: 1, orthographic: true } } },
+  pins: { 1: { a: "a.obj" }, 2: { a: "a.obj", b: "b.obj", contact: "0 3 1 4" } },
 };
 const refuses = (view: unknown, sentence: RegExp) => assert.throws(() => parseView(typeof view === "string" ? view : JSON.stringify(view)), sentence);
 
@@ -39,6 +42,8 @@ test("a malformed view names the member and what it must be", () => {
   refuses({ version: 1, objects: { a: { size: 1 } } }, /objects\.a\.size is unknown/);
   refuses({ version: 1, nodes: { objects: [0] } }, /nodes\.objects is not null, or two objects/);
   refuses({ version: 1, filter: 3 }, /filter is not a text/);
+  refuses({ version: 1, views: { layout: "three" } }, /views\.layout is not one of one, two, four/);
+  refuses({ version: 1, pins: { 1: { c: "x" } } }, /pins\.1\.c is unknown/);
 });
 
 test("every layer of the page is a member of view files, and no other", () => {

@@ -52,6 +52,7 @@ enum class Tag : std::uint32_t {
   enclosed_vertices = 60,
   field_values = 61,
   field_vectors = 62,
+  pin_rows = 63,
   series = 64,
   series_contact_begin = 65,
   series_contact_end = 66,

@@ -13,6 +13,7 @@
 #include "messages/long_steps.hpp"
 #include "messages/mesh_warnings.hpp"
 #include "messages/statistics.hpp"
+#include "pins/pin_commands.hpp"
 #include "program/program_commands.hpp"
 #include "sources/extent.hpp"
 #include "supple/result_descriptions.hpp"
@@ -282,6 +283,7 @@ void pack_scene(Stage& stage, SceneNumbers numbers, const std::vector<FieldForm>
   add_kinds(json);
   write_fields(fields, json);
   add_column_names(stage, json);
+  write_pin_values(json);
   add_warnings(stage, json);
   json.end_object();
   message.begin(MessageKind::scene);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "messages/message.hpp"
+#include "pins/pin_values.hpp"
 
 namespace supple::viewer {
 
@@ -108,6 +109,11 @@ inline constexpr std::array section_forms = std::to_array<SectionForm>({
      "value of a vertex or a triangle, NaN for none", "when a field of numbers is chosen; with values"},
     {Tag::field_vectors, "field_vectors", ScalarOfSection::float32, 3, in_frame, true,
      "vector of a vertex or a triangle, NaN for none", "when a field of vectors is chosen; with vectors"},
+    {Tag::pin_rows, "pin_rows", ScalarOfSection::float64, pin_row_width, in_frame, true,
+     "step, time, and the values of a pin, in the order of `pin_values` of the scene; the object is the "
+     "number "
+     "of the pin",
+     "with rows"},
     {Tag::series, "series", ScalarOfSection::float64, 0, in_series, false,
      "one row for each frame, in the order of the names in `series` of the scene", ""},
     {Tag::series_contact_begin, "series_contact_begin", ScalarOfSection::uint32, 3, in_series, false,

@@ -14,6 +14,9 @@
 
 namespace supple::viewer {
 
+struct Pin;
+struct PinRow;
+
 /// Why a program was paused, and where.
 struct Break {
   std::string event{};  ///< the name of a member of `BreakOptions`
@@ -86,6 +89,10 @@ class Program {
   virtual ProgramState state() const = 0;
   /// The steps since the last call, the last ones if they are very many.
   virtual std::vector<StepRow> take_rows() = 0;
+  /// What is measured in each step from now on.
+  virtual void set_pins(std::vector<Pin> pins) = 0;
+  /// The rows of the pins since the last call, the last ones if they are very many.
+  virtual std::vector<PinRow> take_pin_rows() = 0;
   virtual double time_step() const = 0;
 
   virtual std::vector<UserField> fields() const = 0;

@@ -37,7 +37,7 @@ export async function takeFrames(model: Model, client: Client, view: SceneView, 
   };
   const { figure, first, every, count } = plan;
   try {
-    view.setPicture(figure.size, figure.background, ratioOf(figure, view));
+    view.setPicture(figure.size, figure.background, ratioOf(figure, view), figure.format === "svg" || figure.scaleBar);
     await client.ask({ do: "pause" });
     const { key } = model.field;
     const isOffered = model.scene!.fields.some((form) => form.key === key);

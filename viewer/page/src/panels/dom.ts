@@ -39,6 +39,8 @@ const ICONS: Record<string, string> = {
   explain: '<path d="M1.8 12.5L5 4l2 6zM14.2 12.5L11 4 9 10z"/>',
   ortho: '<path d="M3 5.5h7.5V13H3zM5.5 5.5V3H13v7.5h-2.5"/>',
   perspective: '<path d="M2.5 6h7v7.5h-7zM9.5 6l4-2v6.5l-4 3M2.5 6l4-2h7"/>',
+  search: '<circle cx="7" cy="7" r="4.2"/><path d="M10.2 10.2L14 14"/>',
+  panes: '<path d="M2 3h12v10H2zM8 3v10M2 8h12"/>',
   panels: '<path d="M2 3h12v10H2z"/><path d="M2 3h4v10H2z" fill="currentColor"/>',
 };
 

@@ -3,6 +3,7 @@ import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
 import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts";
 import type { Explanation, Measurement, Model } from "../model";
+import type { Pins } from "../pins";
 import { STAGES } from "../stages";
 import { h, readable } from "./dom";
 
@@ -42,7 +43,7 @@ export class Inspector {
   private due: ReturnType<typeof setTimeout> | undefined;
   private round = 0;
 
-  constructor(private readonly model: Model, private readonly client: Client, private readonly fly: () => void) {
+  constructor(private readonly model: Model, private readonly client: Client, private readonly pins: Pins, private readonly fly: () => void) {
     const field = (label: string, title: string) =>
       h("input", { type: "number", min: 0, step: 1, value: 0, "aria-label": label, title, oninput: () => this.showNames() });
     this.fields = ["A", "B"].map((side) => ({
@@ -55,6 +56,7 @@ export class Inspector {
     model.on("selection", () => this.changed());
     model.on("explanation", () => this.showVerdict());
     model.on("frame", () => this.later());
+    pins.on("list", () => this.draw());
     this.draw();
   }
 
@@ -213,6 +215,13 @@ export class Inspector {
     return rows;
   }
 
+  /** The heading of what the pin of the selection is about, with a button that adds or removes it. */
+  private pinned(title: string): HTMLElement {
+    const text = this.pins.ofSelection ? "unpin" : "pin";
+    const button = h("button", { type: "button", class: "link", title: "Follow its values over time (Shift+I)", onclick: () => this.pins.toggleSelection() }, text);
+    return h("div", { class: "titled" }, h("h3", {}, title), button);
+  }
+
   private draw(): void {
     const { selection } = this.model;
     if (!selection) {
@@ -223,11 +232,11 @@ export class Inspector {
     if (!object) return;
     const parts: HTMLElement[] = [];
     const contact = this.contactRows();
-    if (contact.length > 0) parts.push(h("h3", {}, "Contact"), table(contact));
+    if (contact.length > 0) parts.push(this.pinned("Contact"), table(contact));
     if (selection.vertex !== null) parts.push(h("h3", {}, `Vertex ${selection.vertex}`), table(this.rowsOf("vertex", ["position"])));
     if (selection.triangle !== null) parts.push(h("h3", {}, `Triangle ${selection.triangle}`), table(this.rowsOf("triangle")));
     parts.push(
-      h("h3", {}, object.name),
+      contact.length > 0 ? h("h3", {}, object.name) : this.pinned(object.name),
       table([["object", `${object.index}, ${object.kind}`], ["size", `${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles`], ...this.rowsOf("object").filter(([name]) => name !== "vertices" && name !== "triangles")]),
     );
     this.details.replaceChildren(...parts);

@@ -4,7 +4,7 @@ import { FieldPanel } from "../fields/field_panel";
 import type { Layer, Model } from "../model";
 import type { FrameMessage } from "../protocol/messages";
 import { h, readable } from "./dom";
-import { ObjectList } from "./object_list";
+import { ObjectList } from "./tables/object_list";
 import { TouchLine } from "./touch_line";
 import { ViewOptions } from "./view_options";
 

@@ -15,6 +15,7 @@ export class ViewOptions {
       this.box("Occlusion", "Ambient occlusion: darkens creases and narrow gaps. Off without a graphics card, and when drawing is slow", () => model.occlusion, (on) => (model.occlusion = on)),
       this.box("X-ray", "Makes all surfaces transparent", () => model.xray, (on) => (model.xray = on)),
       this.box("Z up", "The z axis points upward, otherwise the y axis", () => model.up === "z", (on) => (model.up = on ? "z" : "y")),
+      this.box("Values at pointer", "Rest the pointer on a surface or a mark, or press it long with a finger, to see its values", () => model.hover, (on) => (model.hover = on)),
       this.sliceField(),
       this.flat,
     );

@@ -77,6 +77,13 @@ export interface Comparison {
   text: string;
 }
 
+/** A number that is measured of a pin. */
+export interface PinValue {
+  key: string;
+  doc: string;
+  unit: string;
+}
+
 export interface SceneText {
   version: string;
   title: string;
@@ -102,6 +109,8 @@ export interface SceneText {
   can: string[];
   statistics: string[];
   series: string[];
+  /** The numbers in a row of a pin, after step and time. */
+  pin_values: PinValue[];
   warnings: string[];
   /** Only of a program. */
   breaks?: BreakSetting[];
@@ -344,6 +353,8 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(Array.isArray(s.settings) && s.settings.every(isSetting), "settings");
   need(isKinds(s.kinds), "kinds");
   need(Array.isArray(s.fields) && s.fields.every(isFieldForm), "fields");
+  s.pin_values ??= [];
+  need(Array.isArray(s.pin_values) && s.pin_values.every((value) => isText(value?.key) && isText(value.doc) && isText(value.unit)), "pin_values");
   for (const name of ["can", "statistics", "series", "warnings"] as const) need(isTexts(s[name]), name);
   need(Array.isArray(s.objects), "objects");
   for (const object of s.objects as unknown[]) {

@@ -47,6 +47,7 @@ export const FORMS = {
   60: { name: "enclosed_vertices", array: Uint32Array, width: 1, kinds: ["frame"], perObject: false },
   61: { name: "field_values", array: Float32Array, width: 1, kinds: ["frame"], perObject: true },
   62: { name: "field_vectors", array: Float32Array, width: 3, kinds: ["frame"], perObject: true },
+  63: { name: "pin_rows", array: Float64Array, width: 13, kinds: ["frame"], perObject: true },
   64: { name: "series", array: Float64Array, width: 0, kinds: ["series"], perObject: false },
   65: { name: "series_contact_begin", array: Uint32Array, width: 3, kinds: ["series"], perObject: false },
   66: { name: "series_contact_end", array: Uint32Array, width: 3, kinds: ["series"], perObject: false },

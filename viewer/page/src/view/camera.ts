@@ -39,7 +39,8 @@ export class CameraRig {
   private saving: ReturnType<typeof setTimeout> | undefined;
   private wasSet = false;
 
-  constructor(private readonly canvas: HTMLElement, private readonly changed: () => void) {
+  /** `isKept`: the address of the page keeps its state. */
+  constructor(private readonly canvas: HTMLElement, private readonly changed: () => void, private readonly isKept = true) {
     this.camera = this.perspective;
     this.camera.position.set(1.2, 0.8, 2);
     this.controls = this.makeControls();
@@ -70,6 +71,13 @@ export class CameraRig {
     this.controls.target.copy(target);
     this.controls.update();
     this.moved();
+  }
+
+  /** Takes place, upward axis and extent of another camera. */
+  follow(other: CameraRig): void {
+    this.setUp(other.turn);
+    this.radius = other.radius;
+    this.state = other.state;
   }
 
   get isOrthographic(): boolean {
@@ -117,6 +125,7 @@ export class CameraRig {
   private moved(): void {
     this.fit();
     this.changed();
+    if (!this.isKept) return;
     clearTimeout(this.saving);
     this.saving = setTimeout(() => this.save(), 250);
   }
@@ -165,6 +174,11 @@ export class CameraRig {
     direction.applyQuaternion(this.turn);
     const to = this.controls.target.clone().add(direction.normalize().multiplyScalar(this.distance));
     this.go(to, this.controls.target.clone(), fly, this.camera.zoom);
+  }
+
+  looksAlong(view: AxisView): boolean {
+    const direction = new THREE.Vector3(...AXIS_VIEWS[view]).applyQuaternion(this.turn);
+    return this.camera.position.clone().sub(this.controls.target).normalize().distanceTo(direction) < 1e-3;
   }
 
   /** Turns around a point from now on, which moves to the middle of the view. */

@@ -10,20 +10,20 @@ const REACH = 0.05;
 const STRENGTH = 0.85;
 
 export class Occlusion {
-  private pass: GTAOPass | null = null;
-  private camera: Camera | null = null;
+  /** One for perspective cameras, one for orthographic cameras. */
+  private readonly passes = new Map<boolean, GTAOPass>();
   private readonly quad = new FullScreenQuad();
   /** Half the resolution of the picture is enough, because the result is blurred. */
   private readonly target = new THREE.WebGLRenderTarget(1, 1, { depthTexture: new THREE.DepthTexture(1, 1, THREE.UnsignedIntType) });
 
   /** Darkens the picture that is on the screen. `solids` has the surfaces that darken and are darkened. */
   draw(renderer: THREE.WebGLRenderer, solids: THREE.Scene, camera: Camera, sceneSize: number): void {
-    const { drawingBufferWidth, drawingBufferHeight } = renderer.getContext();
-    const [width, height] = [Math.ceil(drawingBufferWidth / 2), Math.ceil(drawingBufferHeight / 2)];
+    const viewport = renderer.getViewport(new THREE.Vector4());
+    const [width, height] = [Math.ceil(viewport.z / 2), Math.ceil(viewport.w / 2)];
     const pass = this.passOf(camera, solids, width, height);
     if (this.target.width !== width || this.target.height !== height) {
       this.target.setSize(width, height);
-      pass.setSize(width, height);
+      for (const each of this.passes.values()) each.setSize(width, height);
     }
     const reach = REACH * sceneSize;
     pass.updateGtaoMaterial({ radius: reach, thickness: reach, distanceExponent: 1, distanceFallOff: 1, scale: 1, samples: 16, screenSpaceRadius: false });
@@ -41,15 +41,17 @@ export class Occlusion {
     renderer.autoClear = autoClear;
   }
 
-  /** The pass depends on the kind of the camera. */
   private passOf(camera: Camera, solids: THREE.Scene, width: number, height: number): GTAOPass {
-    if (this.pass && this.camera === camera) return this.pass;
-    this.pass?.dispose();
-    this.camera = camera;
-    this.pass = new GTAOPass(solids, camera, width, height);
-    this.pass.setGBuffer(this.target.depthTexture!, undefined);  // normals come from the depths
-    this.pass.output = GTAOPass.OUTPUT.Off;
-    return this.pass;
+    const isPerspective = camera instanceof THREE.PerspectiveCamera;
+    let pass = this.passes.get(isPerspective);
+    if (!pass) {
+      pass = new GTAOPass(solids, camera, width, height);
+      pass.setGBuffer(this.target.depthTexture!, undefined);  // normals come from the depths
+      pass.output = GTAOPass.OUTPUT.Off;
+      this.passes.set(isPerspective, pass);
+    }
+    pass.camera = camera;
+    return pass;
   }
 }
 

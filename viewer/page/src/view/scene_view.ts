@@ -1,14 +1,13 @@
 /** Draws surfaces, layers and the selection, only when something has changed. */
 import * as THREE from "three";
-import { contactCount, pointsAt } from "../contacts";
 import { boundsOf, boundsOfAll, type Bounds, type Model, type ObjectState } from "../model";
 import { readField } from "../fields/fields";
-import { CameraRig } from "./camera";
+import type { CameraRig } from "./camera";
 import { Highlights } from "./highlights";
 import { Layers } from "./layers";
 import { drawsInSoftware, Occlusion } from "./occlusion";
-import { pick, type Hit } from "./picking";
-import type { Projection } from "./marks";
+import { LAYOUTS, Panes, type Layout, type Pane } from "./panes";
+import { Pointing } from "./pointing";
 import { shared } from "./primitives";
 import { Slice } from "./slice";
 import { obstacleOf, Surfaces } from "./surfaces";
@@ -35,8 +34,9 @@ export interface PictureSize {
 }
 
 export class SceneView {
-  readonly rig: CameraRig;
   readonly layers: Layers;
+  readonly panes: Panes;
+  readonly pointing: Pointing;
   /** Called before each drawing; allows the session to send the next frame. */
   onTurn: () => void = () => {};
   /** Called when the WebGL context is lost. */
@@ -53,9 +53,9 @@ export class SceneView {
   private shadowIsStale = true;
   private drawnInfo = { calls: 0, triangles: 0, points: 0 };
   private readonly highlights: Highlights;
-  private readonly projection: Projection = { matrix: new THREE.Matrix4(), version: 0 };
-  private readonly size = new THREE.Vector2();
   private ground = new THREE.Color();
+  /** Between several panes. */
+  private readonly line = new THREE.Color();
   private wasSmooth = true;
   private dirty = true;
   private filled = false;
@@ -68,17 +68,18 @@ export class SceneView {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.setClearAlpha(1);
     model.occlusion = !drawsInSoftware(this.renderer.getContext());
-    this.rig = new CameraRig(canvas, () => this.invalidate());
+    this.panes = new Panes(canvas, () => this.invalidate());
     this.layers = new Layers(model);
     this.highlights = new Highlights(model);
     this.slice = new Slice(model, () => this.surfaces.counting);
+    this.pointing = new Pointing(canvas, model, this.panes, this.slice);
     this.scene.add(this.slice.group, this.world.group, this.surfaces.group, this.layers.group, this.highlights.group);
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
       this.onLost("The graphics card stopped drawing. The scene may be too large for it.");
     });
     canvas.addEventListener("dblclick", (event) => {
-      const hit = this.pickAt(event.clientX, event.clientY);
+      const hit = this.pointing.pickAt(event.clientX, event.clientY);
       if (hit) this.rig.pivot(new THREE.Vector3(...hit.point));
     });
     model.on("scene", () => this.build());
@@ -94,14 +95,34 @@ export class SceneView {
     requestAnimationFrame((now) => this.turn(now));
   }
 
+  /** The camera of the active pane. */
+  get rig(): CameraRig {
+    return this.panes.active.rig;
+  }
+
+  setLayout(layout: Layout): void {
+    const visible = this.model.objects.filter((object) => object.visible);
+    for (const { rig } of this.panes.setLayout(layout)) this.frameObjects(visible, rig, false);
+    this.invalidate();
+  }
+
+  nextLayout(): void {
+    this.setLayout(LAYOUTS[(LAYOUTS.indexOf(this.panes.layout) + 1) % LAYOUTS.length]!);
+  }
+
+  nextPane(): void {
+    this.panes.next();
+  }
+
   /** A sentence about why this machine cannot display the scene, or null. */
   obstacle(objects: { name: string; vertices: number; triangles: number }[]): string | null {
     return obstacleOf(this.renderer.getContext() as WebGL2RenderingContext, objects);
   }
 
-  setColours(ground: string, ink: string): void {
+  setColours(ground: string, ink: string, line: string): void {
     this.ground = new THREE.Color(ground);
     this.renderer.setClearColor(this.ground, this.renderer.getClearAlpha());
+    this.line.set(line);
     this.world.setColours(ink, this.ground.getHSL({ h: 0, s: 0, l: 0 }).l < 0.5);
     this.invalidate();
   }
@@ -147,18 +168,19 @@ export class SceneView {
 
   /**
    * From now on only `draw` draws, at the given size, independent of the window. Marks are drawn `ratio` times
-   * larger than their size in CSS pixels. Null returns to the window. Throws with a sentence when WebGL cannot
+   * larger than their size in CSS pixels. `isAlone`: only the active one of several views. Null returns to the window. Throws with a sentence when WebGL cannot
    * draw that size.
    */
-  setPicture(size: PictureSize | null, background: Background = "theme", ratio = 1): void {
+  setPicture(size: PictureSize | null, background: Background = "theme", ratio = 1, isAlone = false): void {
     this.takesPictures = false;
+    this.panes.alone = isAlone;
     this.world.group.visible = size === null || background === "theme";
     this.renderer.setClearColor(size && background === "white" ? WHITE : this.ground, size && background === "transparent" ? 0 : 1);
     if (!size) return this.resize();
     const { width, height } = size;
     const most = this.largestSide;
     if (Math.max(width, height) > most) throw new Error(`WebGL draws no picture of ${width} × ${height} here: ${most} pixels a side are the most. Choose a smaller size.`);
-    this.rig.advance(Infinity);  // end the flight
+    for (const rig of this.panes.rigs) rig.advance(Infinity);  // end the flight
     this.setSize(size, ratio);
     this.takesPictures = true;
     const gl = this.renderer.getContext();
@@ -183,15 +205,14 @@ export class SceneView {
   /** Marks are drawn `ratio` times larger than their size in pixels. */
   private setSize({ width, height }: PictureSize, ratio: number): void {
     this.renderer.setDrawingBufferSize(width, height, 1);
-    shared.resolution.value.set(width / ratio, height / ratio);
     shared.pixelRatio.value = ratio;
-    this.rig.resize(width, height);
+    this.panes.resize(width / ratio, height / ratio);
   }
 
   private build(): void {
     this.surfaces.build(this.model.objects, this.model.positions);
     const bounds = this.model.scene!.bounds;
-    this.rig.setExtent(Math.hypot(...bounds[0], ...bounds[1]));
+    for (const rig of this.panes.rigs) rig.setExtent(Math.hypot(...bounds[0], ...bounds[1]));
     shared.lift.value = 0.01 * Math.hypot(...bounds[1].map((x, axis) => x - bounds[0][axis]!));
     this.slice.build();
     this.placeWorld();
@@ -205,7 +226,7 @@ export class SceneView {
     const { bounds, border, center } = this.model.scene!;
     const { up, unit } = this.model;
     this.world.build(bounds, border ?? null, center, unit, up);
-    this.rig.setUp(this.world.turn);
+    for (const rig of this.panes.rigs) rig.setUp(this.world.turn);
     this.surfaces.up = this.rig.camera.up;
     this.shadowIsStale = true;
   }
@@ -302,74 +323,18 @@ export class SceneView {
     this.rig.frame(new THREE.Vector3().fromArray(point), around);
   }
 
-  private frameObjects(objects: ObjectState[]): void {
+  private frameObjects(objects: ObjectState[], rig = this.rig, fly = true): void {
     const bounds = boundsOfAll(objects);
     if (!bounds) return;
     const lower = new THREE.Vector3().fromArray(bounds.lower);
     const upper = new THREE.Vector3().fromArray(bounds.upper);
-    this.rig.setExtent(Math.max(lower.length(), upper.length()));
-    this.rig.frame(lower.add(upper).multiplyScalar(0.5), objects.map((object) => object.positions));
-  }
-
-  private rayAt(x: number, y: number): THREE.Ray {
-    const box = this.canvas.getBoundingClientRect();
-    const caster = new THREE.Raycaster();
-    const at = new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2);
-    this.rig.camera.updateMatrixWorld();
-    caster.setFromCamera(at, this.rig.camera);
-    return caster.ray;
-  }
-
-  pickAt(x: number, y: number): Hit | null {
-    const { origin, direction } = this.rayAt(x, y);
-    return pick({ origin: origin.toArray(), direction: direction.toArray() }, this.model.objects, (x, y, z) => this.slice.keeps(x, y, z));
-  }
-
-  /** The point below the cursor, in the plane through `through` that faces the camera. */
-  pointAt(x: number, y: number, through: ArrayLike<number>): THREE.Vector3 | null {
-    const normal = this.rig.camera.getWorldDirection(new THREE.Vector3());
-    const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, new THREE.Vector3(through[0], through[1], through[2]));
-    return this.rayAt(x, y).intersectPlane(plane, new THREE.Vector3());
-  }
-
-  /** The position of a point in the window, in pixels. */
-  project(point: ArrayLike<number>): { x: number; y: number } {
-    const box = this.canvas.getBoundingClientRect();
-    this.rig.camera.updateMatrixWorld();
-    const at = new THREE.Vector3(point[0], point[1], point[2]).project(this.rig.camera);
-    return { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
-  }
-
-  /**
-   * The index of the contact whose point is closest to the cursor, within `reach` pixels; −1 when there is
-   * none.
-   */
-  contactAt(x: number, y: number, reach = 8): number {
-    const { frame } = this.model;
-    if (!frame || !this.model.layers.points) return -1;
-    const box = this.canvas.getBoundingClientRect();
-    this.rig.camera.updateMatrixWorld();
-    const matrix = new THREE.Matrix4().multiplyMatrices(this.rig.camera.projectionMatrix, this.rig.camera.matrixWorldInverse);
-    const at = new THREE.Vector3();
-    let best = reach;
-    let found = -1;
-    for (let place = 0; place < contactCount(frame); ++place) {
-      const { data, first, count } = pointsAt(frame, place);
-      for (let from = 8 * first; from < 8 * (first + count); from += 8) {
-        at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
-        if (at.z < -1 || at.z > 1) continue;
-        const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
-        if (away >= best) continue;
-        best = away;
-        found = place;
-      }
-    }
-    return found;
+    rig.setExtent(Math.max(lower.length(), upper.length()));
+    rig.frame(lower.add(upper).multiplyScalar(0.5), objects.map((object) => object.positions), undefined, fly);
   }
 
   private turn(now: number): void {
     requestAnimationFrame((next) => this.turn(next));
-    this.rig.advance(now);
+    for (const rig of this.panes.rigs) rig.advance(now);
     this.onTurn();
     if (!this.dirty || this.takesPictures) return;
     this.simplifyWhenSlow(now);
@@ -392,15 +357,16 @@ export class SceneView {
   draw(): void {
     this.dirty = false;
     if (!this.filled) this.fill();
-    this.arrange();
+    this.world.arrange(this.rig.camera);
     this.surfaces.shade(this.model.smooth);
     if (this.shadowIsStale && this.world.group.visible) {
       this.shadowIsStale = false;
       this.lowerFloor();
       this.world.shadow.draw(this.renderer, this.surfaces.casters);
     }
-    this.drawScene();
-    if (this.world.group.visible) this.world.drawTriad(this.renderer, this.rig.camera);
+    this.drawnInfo = { calls: 0, triangles: 0, points: 0 };
+    if (this.panes.shown.length > 1) this.drawLines();
+    for (const pane of this.panes.shown) this.drawPane(pane);
     if (this.checkMemory && this.model.frame) {
       this.checkMemory = false;
       const gl = this.renderer.getContext();
@@ -408,16 +374,37 @@ export class SceneView {
     }
   }
 
+  /** Fills the canvas; the panes leave lines between them. */
+  private drawLines(): void {
+    const { renderer } = this;
+    const ground = renderer.getClearColor(new THREE.Color());
+    const alpha = renderer.getClearAlpha();
+    renderer.setScissorTest(false);
+    renderer.setClearColor(this.line, alpha);
+    renderer.clear();
+    renderer.setClearColor(ground, alpha);
+  }
+
+  private drawPane(pane: Pane): void {
+    this.panes.begin(pane, this.renderer);
+    this.layers.arrange(pane.projection);
+    this.highlights.arrange(pane.projection);
+    this.drawScene(pane.rig.camera);
+    if (this.world.group.visible) this.world.drawTriad(this.renderer, pane.rig.camera);
+  }
+
   /** With occlusion, marks come in a second pass, so that it does not darken them. */
-  private drawScene(): void {
-    const { renderer, scene, rig: { camera } } = this;
+  private drawScene(camera: CameraRig["camera"]): void {
+    const { renderer, scene } = this;
     const marks = [this.layers.group, this.highlights.group];
     const others = scene.children.filter((child) => !marks.includes(child as THREE.Group));
     const occludes = this.model.occlusion && this.model.layers.surface && this.world.group.visible;
     if (occludes) for (const group of marks) group.visible = false;
     renderer.render(scene, camera);
     const { calls, triangles, points } = renderer.info.render;
-    this.drawnInfo = { calls, triangles, points };
+    this.drawnInfo.calls += calls;
+    this.drawnInfo.triangles += triangles;
+    this.drawnInfo.points += points;
     if (!occludes) return;
     const [lower, upper] = this.model.scene?.bounds ?? [[0, 0, 0], [1, 1, 1]];
     this.occlusion.draw(renderer, this.surfaces.solids, camera, Math.hypot(...upper.map((x, axis) => x - lower[axis]!)));
@@ -429,20 +416,6 @@ export class SceneView {
     renderer.autoClear = true;
     others.forEach((group, i) => (group.visible = were[i]!));
     this.drawnInfo.points += renderer.info.render.points;
-  }
-
-  /** Chooses the marks to draw for the camera of this drawing. */
-  private arrange(): void {
-    const { camera } = this.rig;
-    const { matrix } = this.projection;
-    camera.updateMatrixWorld();
-    const before = matrix.clone();
-    matrix.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-    if (!matrix.equals(before) || !this.size.equals(shared.resolution.value)) this.projection.version += 1;
-    this.size.copy(shared.resolution.value);
-    this.world.arrange(camera);
-    this.layers.arrange(this.projection);
-    this.highlights.arrange(this.projection);
   }
 
   /** From positions to clip space. */

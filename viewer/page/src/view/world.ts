@@ -197,7 +197,7 @@ export class World {
     const whole = renderer.getViewport(new THREE.Vector4());
     renderer.autoClear = false;
     renderer.clearDepth();
-    renderer.setViewport(0, 0, side, side);
+    renderer.setViewport(whole.x, whole.y, side, side);
     renderer.render(this.triad, this.triadCamera);
     renderer.setViewport(whole);
     renderer.autoClear = autoClear;

@@ -1,5 +1,5 @@
 /** A virtual list: only visible rows have elements. */
-import { h, remPixels } from "./dom";
+import { h, remPixels } from "../dom";
 
 /** Browsers do not lay out elements higher than this. */
 const HIGHEST = 8_000_000;

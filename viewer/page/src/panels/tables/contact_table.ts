@@ -1,8 +1,11 @@
 /** What touches what: a table of pairs of objects, each of which opens to its single contacts. */
-import { findContact, hasImpacts, isHit, isTouching, keyAt, kindAt, pairsOf, pointOf, sidesOf, type Run, type TouchingPair } from "../contacts";
-import type { Model } from "../model";
-import { h, readable } from "./dom";
+import { findContact, hasImpacts, isHit, isTouching, keyAt, kindAt, pairsOf, pointOf, sidesOf, type Run, type TouchingPair } from "../../contacts";
+import type { Column } from "../../filter";
+import type { Model } from "../../model";
+import type { Pins } from "../../pins";
+import { h, readable } from "../dom";
 import { makeRow, RowWindow, type Row } from "./row_window";
+import { TableControls } from "./table_controls";
 
 const ROW_HEIGHT = 1.5;  // in rem
 const rounded = (value: number): string => String(Number(value.toPrecision(3)));
@@ -16,32 +19,24 @@ export class ContactTable {
   readonly element: HTMLElement;
   private readonly summary = h("p", { class: "hint", "aria-live": "off" });
   private readonly window: RowWindow<Row>;
-  private readonly filter = h("input", { type: "search", placeholder: "Filter by name", "aria-label": "Filter contacts by name", oninput: () => this.setFilter(this.filter.value) });
+  private readonly controls: TableControls<TouchingPair>;
+  private readonly pinButton = h("button", { type: "button", class: "link", disabled: true, title: "Follow the chosen pair or contact over time (Shift+I)", onclick: () => this.pin() }, "pin");
   private listed: TouchingPair[] = [];
   /** The first row of each listed pair, and the number of rows. */
   private starts: number[] = [0];
   private readonly open = new Set<string>();
-  private readonly heads: HTMLButtonElement[];
-  /** The column by which pairs are sorted, and whether against its first order; null for the order of objects. */
-  private sorting: { column: number; reversed: boolean } | null = null;
   /** The chosen pair and the number of the single contact in it, −1 for the pair itself. */
   private chosen: { pair: string; single: number } | null = null;
 
-  constructor(private readonly model: Model, private readonly flyTo: (point: number[], reach: number) => void) {
+  constructor(private readonly model: Model, private readonly pins: Pins, private readonly flyTo: (point: number[], reach: number) => void) {
     this.window = new RowWindow(
       { class: "table-view", role: "treegrid", "aria-label": "Contacts", tabindex: 0, onkeydown: (event: KeyboardEvent) => this.key(event) },
       h("div", { class: "rows" }), ROW_HEIGHT, () => makeRow(4, (index) => this.press(index), (row, cells, index) => this.showRow(row, cells, index)),
     );
-    const heads: [string, string][] = [
-      ["object a", ""], ["object b", ""], ["contacts", "Contacts and near pairs of the two objects"],
-      ["gap or depth", "The smallest gap, the largest depth, or the time of the first hit as a part of the step"],
-    ];
-    this.heads = heads.map(([name, title], column) => h("button", { type: "button", title: `${title} (sort)`.trim(), "aria-label": `Sort by ${name}`, onclick: () => this.sortBy(column) }, name));
+    this.controls = new TableControls(this.columns(), ["contacts", "gap", "depth", "time"], "contacts", this.window.element, () => this.setFilter(this.controls.field.value));
     this.element = h(
       "div", { class: "contacts pairs" },
-      h("div", { class: "table-top" }, this.filter, this.summary),
-      h("div", { class: "row head", role: "group", "aria-label": "Sort contacts" }, ...this.heads),
-      this.window.element,
+      h("div", { class: "table-top" }, this.controls.field, this.pinButton, this.summary), this.controls.refusal, this.controls.head, this.window.element,
     );
     model.on("frame", () => this.update());
     model.on("scene", () => {
@@ -50,40 +45,25 @@ export class ContactTable {
       this.update();
     });
     model.on("selection", () => this.window.draw());
-    model.on("display", () => this.filter.value !== model.filter && this.setFilter(model.filter));
+    model.on("display", () => this.controls.field.value !== model.filter && this.setFilter(model.filter));
   }
 
   private nameOf(object: number): string {
     return this.model.objects[object]!.name;
   }
 
-  /** The first click sorts, the second reverses, the third restores the order of objects. */
-  private sortBy(column: number): void {
-    const { sorting } = this;
-    if (sorting?.column !== column) this.sorting = { column, reversed: false };
-    else this.sorting = sorting.reversed ? null : { column, reversed: true };
-    this.heads.forEach((head, i) => {
-      const isReversed = this.sorting?.column === i ? this.sorting.reversed : null;
-      head.dataset["sort"] = isReversed === null ? "" : isReversed === (i < 2) ? "down" : "up";
-      head.setAttribute("aria-pressed", String(isReversed !== null));
-    });
-    this.update();
-  }
-
-  private sorted(pairs: TouchingPair[]): TouchingPair[] {
-    if (!this.sorting) return pairs;
-    const { column, reversed } = this.sorting;
-    const order = [
-      (p: TouchingPair, q: TouchingPair) => compareNames(this.nameOf(p.a), this.nameOf(q.a)),
-      (p: TouchingPair, q: TouchingPair) => compareNames(this.nameOf(p.b), this.nameOf(q.b)),
-      (p: TouchingPair, q: TouchingPair) => q.count - p.count,
-      (p: TouchingPair, q: TouchingPair) => overlapOf(q) - overlapOf(p),
-    ][column]!;
-    return [...pairs].sort((p, q) => (reversed ? order(q, p) : order(p, q)));
+  private columns(): Column<TouchingPair>[] {
+    return [
+      { key: "a", label: "object a", value: ({ a }) => this.nameOf(a) },
+      { key: "b", label: "object b", value: ({ b }) => this.nameOf(b) },
+      { key: "contacts", label: "contacts", title: "Contacts and near pairs of the two objects", value: ({ count }) => count },
+      { key: "is", label: "gap or depth", title: "The smallest gap, the largest depth, or the time of the first hit as a part of the step", value: wordOf, rank: overlapOf },
+      { key: "gap", value: ({ gap }) => gap }, { key: "depth", value: ({ depth }) => depth }, { key: "time", value: ({ time }) => time },
+    ];
   }
 
   private setFilter(text: string): void {
-    if (this.filter.value !== text) this.filter.value = text;
+    if (this.controls.field.value !== text) this.controls.field.value = text;
     this.model.filter = text;
     this.update();
   }
@@ -91,13 +71,13 @@ export class ContactTable {
   private update(): void {
     const { frame } = this.model;
     const all = frame ? pairsOf(frame) : [];
-    const wanted = this.model.filter.trim().toLowerCase();
-    this.listed = this.sorted(wanted === "" ? all : all.filter(({ a, b }) => [a, b].some((object) => this.nameOf(object).toLowerCase().includes(wanted))));
+    this.listed = this.controls.apply(all);
     this.starts = [0];
     for (const pair of this.listed) this.starts.push(this.starts.at(-1)! + 1 + (this.open.has(keyOf(pair)) ? pair.count : 0));
     const pairs = `${readable(all.length)} ${all.length === 1 ? "pair" : "pairs"}`;
-    const text = wanted === "" ? pairs : `${readable(this.listed.length)} of ${pairs}`;
+    const text = !this.controls.isFiltered ? pairs : `${readable(this.listed.length)} of ${pairs}`;
     if (this.summary.textContent !== text) this.summary.textContent = text;
+    this.pinButton.disabled = this.chosenRow() < 0;
     this.window.element.setAttribute("aria-rowcount", String(this.count));
     this.window.setCount(this.count);
   }
@@ -173,6 +153,7 @@ export class ContactTable {
     else this.model.select({ object: pair.a, triangle: null, vertex: null });
     const points = from ? [pointOf(frame, from.kind, from.place)] : pair.runs.flatMap(({ kind, first, count }) => Array.from({ length: count }, (_, i) => pointOf(frame, kind, first + i)));
     this.showPoints(points.filter((point) => point !== null));
+    this.pinButton.disabled = false;
     this.window.draw();
   }
 
@@ -183,9 +164,22 @@ export class ContactTable {
     this.flyTo(middle, Math.hypot(...upper.map((x, axis) => x - lower[axis]!)) / 2);
   }
 
+  /** Pins the chosen contact, or the pair: also for rows that only a pair has, such as gaps. */
+  private pin(): void {
+    const now = this.chosenRow();
+    if (now < 0) return;
+    const { pair, single } = this.at(now);
+    this.pins.add([pair.a, pair.b], single < 0 ? null : this.model.contact);
+  }
+
   private key(event: KeyboardEvent): void {
     const now = this.chosenRow();
     const pair = now >= 0 ? this.at(now).pair : null;
+    if (event.shiftKey && event.key.toUpperCase() === "I" && pair) {
+      event.preventDefault();
+      event.stopPropagation();
+      return this.pin();
+    }
     if (pair && (event.key === "ArrowRight" || event.key === "ArrowLeft" || event.key === "Enter")) {
       const isOpen = this.open.has(keyOf(pair));
       if (isOpen && event.key !== "ArrowRight") this.open.delete(keyOf(pair));
@@ -222,7 +216,7 @@ const keyOf = ({ a, b }: TouchingPair): string => `${a} ${b}`;
 const MOST_POINTS = 10_000;
 const ends = (points: number[][], axis: number): number[] => points.slice(0, MOST_POINTS).map((point) => point[axis]!);
 
-const { compare: compareNames } = new Intl.Collator(undefined, { numeric: true });
+const wordOf = (pair: TouchingPair): string => (isTouching(pair) ? "touching" : isHit(pair) ? "hit" : "near");
 
 /** Deeper pairs have more, pairs that are farther apart less: depths, then intersections, hits and gaps. */
 function overlapOf(pair: TouchingPair): number {

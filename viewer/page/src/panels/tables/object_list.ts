@@ -1,10 +1,11 @@
 /** The list of objects: show, hide, colour, select, and find by name. */
-import type { Model, ObjectState } from "../model";
-import { h, readable } from "./dom";
+import type { Model, ObjectState } from "../../model";
+import { h, readable } from "../dom";
 import { RowWindow, type Row } from "./row_window";
+import { TableControls } from "./table_controls";
 
 const ROW_HEIGHT = 1.6875;  // in rem
-/** The filter appears from this many objects on. */
+/** The filter and the header appear from this many objects on. */
 const FEWEST_TO_FILTER = 13;
 
 /** A row of controls that can be reused for another object. */
@@ -66,7 +67,14 @@ export class ObjectList {
   readonly element: HTMLElement;
   private readonly list = h("ul", { "aria-label": "Objects" });
   private readonly window: RowWindow<ObjectRow>;
-  private readonly filter = h("input", { type: "search", placeholder: "Filter objects", "aria-label": "Filter objects", hidden: true, oninput: () => this.update() });
+  private readonly controls = new TableControls<ObjectState>(
+    [
+      { key: "name", label: "name", value: ({ name }) => name }, { key: "kind", label: "kind", title: "How the object moves", value: ({ kind }) => kind },
+      { key: "triangles", label: "triangles", value: ({ triangles }) => triangles }, { key: "vertices", value: ({ vertices }) => vertices },
+      { key: "shown", value: ({ visible }) => (visible ? "yes" : "no") },
+    ],
+    ["triangles", "vertices"], "objects", null, () => this.update(),
+  );
   private readonly nothing = h("p", { class: "hint", role: "status", hidden: true });
   private listed: ObjectState[] = [];
 
@@ -77,7 +85,7 @@ export class ObjectList {
     );
     const all = h("button", { type: "button", class: "link", title: "Show or hide all listed objects", onclick: () => this.toggleAll() }, "all");
     const only = h("button", { type: "button", class: "link", title: "Show only the selected object, or all again", onclick: () => this.isolate() }, "only selected");
-    this.element = h("section", { class: "grow" }, h("h2", {}, "Objects", h("span", { class: "links" }, only, all)), this.filter, this.nothing, this.window.element);
+    this.element = h("section", { class: "grow" }, h("h2", {}, "Objects", h("span", { class: "links" }, only, all)), this.controls.field, this.controls.refusal, this.nothing, this.controls.head, this.window.element);
     model.on("scene", () => this.build());
     only.disabled = true;
     model.on("selection", () => {
@@ -88,17 +96,17 @@ export class ObjectList {
   }
 
   private build(): void {
-    this.filter.hidden = this.model.objects.length < FEWEST_TO_FILTER;
-    if (this.filter.hidden) this.filter.value = "";
+    const { field, head } = this.controls;
+    field.hidden = head.hidden = this.model.objects.length < FEWEST_TO_FILTER;
+    if (field.hidden) field.value = "";
     this.update();
   }
 
   /** Lists the objects whose names match the filter. */
   private update(): void {
-    const wanted = this.filter.value.trim().toLowerCase();
-    this.listed = this.model.objects.filter(({ name }) => name.toLowerCase().includes(wanted));
-    this.nothing.hidden = this.listed.length > 0 || wanted === "";
-    this.nothing.textContent = this.nothing.hidden ? "" : `No object has “${this.filter.value.trim()}” in its name.`;
+    this.listed = this.controls.apply(this.model.objects);
+    this.nothing.hidden = this.listed.length > 0 || !this.controls.isFiltered;
+    this.nothing.textContent = this.nothing.hidden ? "" : `No object is like “${this.controls.field.value.trim()}”.`;
     this.window.setCount(this.listed.length);
     this.showSelected();
   }

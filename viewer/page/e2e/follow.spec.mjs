@@ -1,0 +1,265 @@
+// Pins, tables that sort and filter, and the command palette.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { hasFrame, pause, runProgram, scenes, seenTriangle, settled, SWAYING_CROWD, until } from "./harness.mjs";
+
+const nine = join(scenes, "nine.toml");
+const pins = (page) => page.getByRole("grid", { name: "Pins" });
+const pinRows = (page) => pins(page).getByRole("row").filter({ visible: true });
+
+/** A pair from its row, an object from the inspector, a contact by keys: each has a row for each step. */
+async function pinsFollowEachStep(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.contacts.length > 400);
+  await pause(page);
+  const contacts = page.getByRole("treegrid", { name: "Contacts" });
+  const pin = page.locator(".pairs").getByRole("button", { name: "pin" });
+  assert.ok(await pin.isDisabled());
+  await contacts.locator('[aria-rowindex="1"]').click();
+  const pair = await page.evaluate(() => [supple.model.frame.contacts[0], supple.model.frame.contacts[2]]);
+  await pin.click();
+  await page.getByRole("tab", { name: "Pins", selected: true }).waitFor();
+  await page.getByRole("tab", { name: "Contacts" }).click();
+  await contacts.locator('[aria-rowindex="2"]').click();
+  const key = await page.evaluate(() => [...supple.model.contact]);
+  await page.keyboard.press("Shift+I");
+  await page.keyboard.press("f");  // back from the contact
+  await settled(page);
+  const seen = await seenTriangle(page, 0);
+  await page.mouse.click(seen.x, seen.y);
+  await page.locator(".details").getByRole("button", { name: "pin" }).click();
+  await page.locator(".pin-detail h3").waitFor();
+  assert.deepEqual(await page.evaluate(() => supple.pins.list.map(({ objects, contact }) => ({ objects, contact: contact && [...contact] }))), [{ objects: pair, contact: null }, { objects: pair, contact: key }, { objects: [0], contact: null }]);
+  assert.equal(await pinRows(page).count(), 3);
+
+  await settled(page);
+  const begin = await page.evaluate(() => supple.model.frame.text.step);
+  await page.getByRole("button", { name: "Play" }).click();
+  await until(page, (begin) => supple.model.frame.text.step > begin + 20, begin);
+  await pause(page);
+  const { steps, present, expected, last } = await page.evaluate((pair) => {
+    const { frame } = supple.model;
+    let expected = 0;
+    for (let i = 0; i < frame.contacts.length; i += 8) if (frame.contacts[i] === pair[0] && frame.contacts[i + 2] === pair[1]) expected += 1;
+    return { steps: supple.pins.list.map(({ series }) => series.steps), present: supple.pins.list[0].series.at(0, frame.text.step), expected, last: frame.text.step };
+  }, pair);
+  for (const list of steps) {
+    assert.equal(list.at(-1), last);
+    assert.ok(list.length > 20 && list.every((step, i) => i === 0 || step === list[i - 1] + 1), `steps are missing: ${list}`);
+  }
+  assert.equal(present, expected);
+  const shown = await pins(page).locator('[aria-rowindex="1"] [role=gridcell]').nth(1).textContent();
+  await until(page, ([text]) => document.querySelector('.pins [aria-rowindex="1"] > :nth-child(2)').textContent === text, [expected >= 1000 ? expected.toLocaleString("en") : String(expected)]);
+  assert.ok(shown !== "");
+  for (const figure of ["contacts", "length", "normal"]) {
+    await pins(page).locator('[aria-rowindex="1"]').click();
+    await page.locator(".pin-detail").getByRole("figure", { name: figure }).waitFor();
+  }
+
+  // The plots are saved as numbers.
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "save CSV" }).click()]);
+  const path = stage.file("pin.csv");
+  await download.saveAs(path);
+  const [head, ...rows] = readFileSync(path, "utf8").trim().split("\n");
+  assert.ok(head.startsWith("step,time,contacts,gap,depth,length,area,normal_x"));
+  assert.equal(rows.length, steps[0].length);
+  assert.deepEqual(rows.at(-1).split(",").slice(0, 1).concat(rows.at(-1).split(",")[2]), [String(last), String(expected)]);
+
+  // Pins are tables: sorted, filtered, removed by a key; they survive a reload.
+  await page.getByRole("searchbox", { name: "Filter pins" }).fill("speed>=0");
+  assert.equal(await pinRows(page).count(), 1);
+  await page.getByRole("searchbox", { name: "Filter pins" }).fill("");
+  await page.reload();
+  await hasFrame(page);
+  await until(page, () => supple.pins.list.length === 3 && supple.pins.list.every(({ series }) => series.steps.length > 0));
+  await page.getByRole("tab", { name: "Pins" }).click();
+  await pins(page).locator('[aria-rowindex="1"]').click();
+  await page.keyboard.press("Delete");
+  await until(page, () => supple.pins.list.length === 2);
+  await page.getByRole("button", { name: "unpin" }).click();
+  await until(page, () => supple.pins.list.length === 1);
+}
+
+/** A recording has the values of frames that were shown, and a click in a plot goes to a frame. */
+async function pinsOfARecording(stage) {
+  const file = stage.file("run.h5");
+  await runProgram(stage.supple, ["simulate", nine, "--steps", "40", "--record", file, "--quiet"]);
+  const { page } = await stage.view(file);
+  await until(page, () => supple.model.history.frames.length > 0);
+  await page.evaluate(() => supple.pins.add([0, 1]));
+  await page.evaluate(() => supple.pins.add([0]));
+  await page.getByText("A recording has values of the frames that were shown").first().waitFor();
+  await page.getByRole("combobox", { name: "Speed" }).selectOption("5");
+  await page.getByRole("button", { name: "Play" }).click();
+  const last = await page.evaluate(() => supple.model.scene.frames - 1);
+  await until(page, (last) => supple.model.frame.text.step === last && !supple.model.frame.text.playing, last);
+  for (let frame = last - 1; frame > last - 10; --frame) {
+    await page.keyboard.press("ArrowLeft");
+    await until(page, (frame) => supple.model.frame.text.step === frame, frame);
+  }
+  const steps = await page.evaluate(() => supple.pins.list[0].series.steps);
+  assert.ok(steps.length > 8 && steps.every((step, i) => i === 0 || step > steps[i - 1]), steps.join());
+  const plot = page.locator(".pin-detail .u-over").first();
+  await plot.scrollIntoViewIfNeeded();
+  const area = await plot.boundingBox();
+  await page.mouse.click(area.x + 1, area.y + area.height / 2);
+  await until(page, (first) => supple.model.frame.text.step === first, steps[0]);
+}
+
+/** Of a pair that never touches and of a contact that has ended, the page says so. */
+async function pinsSayWhatIsMissing(stage) {
+  const { page } = await stage.view(nine);
+  await until(page, () => supple.model.frame.contacts.length > 0);
+  await pause(page);
+  const apart = await page.evaluate(() => {
+    const { frame, objects } = supple.model;
+    for (let a = 0; a < objects.length; ++a)
+      for (let b = a + 1; b < objects.length; ++b) {
+        const touches = Array.from({ length: frame.contacts.length / 8 }, (_, i) => i).some((i) => frame.contacts[8 * i] === a && frame.contacts[8 * i + 2] === b);
+        if (!touches) return [a, b];
+      }
+  });
+  await page.evaluate((pair) => supple.pins.add(pair), apart);
+  await page.getByText("No contact in 1 step.").waitFor();
+  const key = await page.evaluate(() => [...supple.model.frame.contacts.subarray(0, 4)]);
+  await page.evaluate((key) => supple.pins.add([key[0], key[2]], key), key);
+  await page.getByText("Values of 1 step.").waitFor();
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.getByText("No longer a contact.").waitFor();
+}
+
+/** Tables have a filter for each column; an unreadable one says why and lists all. */
+async function tablesAreFiltered(stage) {
+  const ball = (name, x) => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 8\ntranslate = [${x}, 0, 0]\nmargin = 0.2\nsolid = true\n`;
+  const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "proximity,penetration"\n${ball("one", 0)}${ball("two", 1.6)}${ball("three", 3.3)}${ball("four", 5.42)}`));
+  const summary = (text) => page.locator(".table-top .hint").filter({ visible: true, hasText: text }).waitFor();
+  await summary("3 pairs");
+  const field = page.getByRole("searchbox", { name: "Filter contacts" });
+  await field.fill("depth>0.35");
+  await summary("1 of 3 pairs");
+  assert.equal(await page.getByRole("treegrid", { name: "Contacts" }).locator(".row:visible").filter({ hasText: "two" }).count(), 1);
+  await field.fill("gap<0.2 a=three is=near");
+  await summary("1 of 3 pairs");
+  await field.fill("dept>0.35");
+  await page.getByText("There is no column “dept”").waitFor();
+  assert.equal(await field.getAttribute("aria-invalid"), "true");
+  await summary("3 of 3 pairs");
+
+  await page.getByRole("tab", { name: "Curves" }).click();
+  const curves = page.getByRole("grid", { name: "Curves" });
+  await page.getByRole("button", { name: "Sort by depth" }).click();
+  const depths = async () => (await curves.locator(".row:visible > :nth-child(4)").allTextContents()).map(Number);
+  assert.equal(await page.getByRole("columnheader", { name: "depth" }).filter({ visible: true }).getAttribute("aria-sort"), "descending");
+  const [deep, flat, ...more] = await depths();
+  assert.ok(deep > flat && more.length === 0, `${deep}, ${flat}`);
+  const kind = await page.evaluate(() => supple.model.scene.kinds.curve[supple.model.frame.curves[2]]);
+  await page.getByRole("searchbox", { name: "Filter curves" }).fill(`depth<${(deep + flat) / 2} kind=${kind}`);
+  await summary("1 of 2 curves");
+  await curves.locator(".row:visible").click();
+  assert.equal(await curves.locator('[aria-selected="true"]:visible').count(), 1);
+}
+
+async function objectsAreSorted(stage) {
+  const more = `[[object]]\nname = "plate"\nmodel = "cloth"\ncolumns = 30\nrows = 30\nwidth = 1\ndepth = 1\ntranslate = [0, -4, 0]\n`;
+  const { page } = await stage.view(stage.file("crowd.toml", SWAYING_CROWD.replace("[20, 25, 10]", "[4, 4, 4]") + more));
+  await settled(page);
+  const first = () => page.getByRole("list", { name: "Objects" }).getByRole("listitem").first().locator(".name .text").textContent();
+  assert.match(await first(), /^ball/);
+  await page.getByRole("button", { name: "Sort by triangles" }).click();
+  assert.equal(await first(), "plate");
+  await page.getByRole("button", { name: "Sort by triangles" }).click();
+  assert.match(await first(), /^ball/);
+  await page.getByRole("searchbox", { name: "Filter objects" }).fill("triangles>80");
+  assert.equal(await page.getByRole("list", { name: "Objects" }).getByRole("listitem").count(), 1);
+}
+
+const palette = (page) => page.getByRole("dialog", { name: "Command palette" });
+
+/** Everything by keys: commands, objects, layers, tabs, settings. */
+async function paletteByKeys(stage) {
+  const { page } = await stage.view(nine);
+  await pause(page);
+  const types = async (text) => {
+    await page.keyboard.press("Control+k");
+    await page.getByRole("combobox", { name: /^Command, object/ }).fill(text);
+  };
+  const chosen = () => palette(page).locator('[aria-selected="true"] .text').textContent();
+  await types("fral");
+  assert.equal(await chosen(), "Frame all");
+  await page.keyboard.press("Escape");
+  await types("frame");
+  assert.equal(await chosen(), "Frame all");
+  await page.keyboard.press("ArrowDown");
+  assert.notEqual(await chosen(), "Frame all");
+  await page.keyboard.press("ArrowUp");
+  assert.equal(await chosen(), "Frame all");
+  const active = await page.getByRole("combobox", { name: /^Command, object/ }).getAttribute("aria-activedescendant");
+  assert.equal(await page.locator(`#${active}`).getAttribute("aria-selected"), "true");
+  await page.keyboard.press("Escape");
+  await palette(page).waitFor({ state: "hidden" });
+
+  const name = await page.evaluate(() => supple.model.objects[2].name);
+  await types(`hide ${name}`);
+  await page.keyboard.press("Enter");
+  await until(page, () => !supple.model.objects[2].visible);
+  await types(`select ${name}`);
+  await page.keyboard.press("Enter");
+  await until(page, () => supple.model.selection?.object === 2);
+  await types("wirefr");
+  await page.keyboard.press("Enter");
+  await until(page, () => supple.model.layers.wireframe);
+  await types("four views");
+  await page.keyboard.press("Enter");
+  assert.equal((await page.evaluate(() => supple.cameras())).length, 4);
+  await types("leaf size");
+  await page.keyboard.press("Enter");
+  await until(page, () => document.activeElement?.id === "setting-leaf_size");
+  await types("tab plots");  // from a field for text
+  await page.keyboard.press("Enter");
+  await page.getByRole("tab", { name: "Plots", selected: true }).waitFor();
+  await types("zzzzqqq");
+  await page.getByText("Nothing is like “zzzzqqq”.").waitFor();
+  await page.keyboard.press("Enter");
+  assert.ok(await palette(page).isVisible());
+}
+
+async function paletteByTouch(stage) {
+  const program = await stage.program(nine);
+  for (const [width, colorScheme] of [[390, "dark"], [800, "light"], [1440, "light"]]) {
+    const page = await stage.page({ viewport: { width, height: 800 }, hasTouch: true, colorScheme });
+    await page.goto(program.address);
+    await hasFrame(page);
+    await page.getByRole("button", { name: "Command palette" }).tap();
+    await palette(page).getByRole("option", { name: /^Wireframe/ }).scrollIntoViewIfNeeded();
+    await palette(page).getByRole("option", { name: /^Wireframe/ }).tap();
+    await until(page, () => supple.model.layers.wireframe);
+    await page.getByRole("button", { name: "Command palette" }).tap();
+    await page.getByRole("combobox", { name: /^Command, object/ }).fill("tab settings");
+    await palette(page).getByRole("option").first().tap();
+    await page.getByRole("tab", { name: "Settings", selected: true }).waitFor();
+    assert.ok(await page.locator("#page-Settings").isVisible());
+    await page.close();
+  }
+}
+
+/** Each key of the list is listed once, and the list has the keys of the layers. */
+async function helpListsTheCommands(stage) {
+  const { page } = await stage.view(nine);
+  await page.keyboard.press("?");
+  const help = page.getByRole("dialog", { name: "Keyboard shortcuts" });
+  const keys = await help.locator("dt").evaluateAll((terms) => terms.map((term) => [...term.children].map((key) => key.textContent).join(" ")));
+  assert.equal(new Set(keys).size, keys.length, "a key is listed twice");
+  for (const key of ["Space", "Shift ←", "Ctrl K", "Shift I", "Q", "X", "Esc"]) assert.ok(keys.includes(key), `${key} is not listed`);
+}
+
+export const tests = [
+  ["pins have each step", pinsFollowEachStep],
+  ["pins of a recording", pinsOfARecording],
+  ["pins say what is missing", pinsSayWhatIsMissing],
+  ["tables are filtered by each column", tablesAreFiltered],
+  ["objects are sorted", objectsAreSorted],
+  ["palette by keys", paletteByKeys],
+  ["palette by touch", paletteByTouch],
+  ["help lists the commands", helpListsTheCommands],
+];
