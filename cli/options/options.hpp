@@ -90,6 +90,7 @@ struct ViewOptions : MethodOptions {
   std::string token_file;  ///< empty: a new token in each run
   bool open_browser = true;
   viewer::MemoryBudget budget;
+  bool has_spectators = false;  ///< pages that may only watch
   bool follow = false;    ///< a recording that is still being written
   std::string compared;   ///< a recording to compare with; empty: none
   double tolerance = 0;   ///< of that comparison, in units of length

@@ -74,15 +74,19 @@ void warn_of_others(const ViewOptions& options) {
 }
 
 int serve(viewer::SceneView show, const ViewOptions& options, std::string_view page) {
+  const std::string watching_page =
+      options.has_spectators ? viewer::page_with_json(page, "supple-spectator", "true") : "";
   viewer::Server server(
       viewer::Session(std::move(show), options.budget),
       {.address = options.address,
        .port = options.port,
        .page = page,
+       .watching_page = watching_page,
        .token = options.token_file.empty() ? "" : viewer::token_of_file(options.token_file)});
   warn_of_others(options);
   const Interruption interruption;
   fmt::print("Open {}\n", server.url());
+  if (options.has_spectators) fmt::print("Watch {}\n", server.watching_url());
   std::fflush(stdout);
   std::optional<viewer::BrowserVisit> visit;
   if (options.open_browser) {

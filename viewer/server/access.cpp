@@ -63,6 +63,14 @@ bool is_address(std::string_view name) {
          std::all_of(name.begin(), name.end(), [](char c) { return is_digit(c) || c == '.'; });
 }
 
+/// Takes constant time for texts of the same length.
+bool equals(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  int difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) difference |= a[i] ^ b[i];
+  return difference == 0;
+}
+
 }  // namespace
 
 std::string make_token() {
@@ -118,8 +126,10 @@ Target parse_target(std::string_view target) {
   return parsed;
 }
 
-Access::Access(const std::string& address, std::uint16_t port, std::string token)
-    : any_address_(address == "0.0.0.0" || address == "::"), token_(std::move(token)) {
+Access::Access(const std::string& address, std::uint16_t port, std::string token, std::string watching_token)
+    : any_address_(address == "0.0.0.0" || address == "::"),
+      token_(std::move(token)),
+      watching_token_(std::move(watching_token)) {
   if (port != 80) {  // browsers omit the default port
     port_ += ':';
     port_ += std::to_string(port);
@@ -149,10 +159,11 @@ bool Access::is_own_origin(std::string_view origin, std::string_view host) {
 }
 
 bool Access::knows_token(std::string_view token) const {
-  if (token.size() != token_.size()) return false;
-  int difference = 0;
-  for (std::size_t i = 0; i < token.size(); ++i) difference |= token[i] ^ token_[i];
-  return difference == 0;
+  return equals(token, token_);
+}
+
+bool Access::may_watch(std::string_view token) const {
+  return !watching_token_.empty() && equals(token, watching_token_);
 }
 
 std::string content_policy(std::string_view host) {

@@ -25,9 +25,11 @@ Target parse_target(std::string_view target);
 class Access {
  public:
   /// `address` is an IP address without brackets: of one interface, or of all (0.0.0.0, ::).
-  Access(const std::string& address, std::uint16_t port, std::string token);
+  /// Without a `watching_token`, nobody may only watch.
+  Access(const std::string& address, std::uint16_t port, std::string token, std::string watching_token = {});
 
   const std::string& token() const { return token_; }
+  const std::string& watching_token() const { return watching_token_; }
   /// `127.0.0.1:8080` or `[::1]:8080`. When the server listens on all interfaces: the address of this machine
   /// in its network, or the loopback address without a network.
   const std::string& host() const { return hosts_.front(); }
@@ -40,12 +42,14 @@ class Access {
   static bool is_own_origin(std::string_view origin, std::string_view host);
   /// Takes constant time for texts of the same length.
   bool knows_token(std::string_view token) const;
+  /// The same for the token of those who may only watch.
+  bool may_watch(std::string_view token) const;
 
  private:
   std::vector<std::string> hosts_;
   std::string port_;
   bool any_address_ = false;
-  std::string token_;
+  std::string token_, watching_token_;
 };
 
 /// The resources that a page of this server may load: itself and its session. A header of its answer.

@@ -33,7 +33,8 @@ enum CloseCode : std::uint16_t {
   taken_over = 4001,
   program_ends = 4002,
   no_command = 4003,
-  session_failed = 4004
+  session_failed = 4004,
+  too_many_spectators = 4005
 };
 
 /// A connected page, that is, a WebSocket.

@@ -19,6 +19,7 @@
 #include "access.hpp"
 #include "page.hpp"
 #include "session_thread.hpp"
+#include "spectators.hpp"
 #include "supple/error.hpp"
 #include "supple/version.hpp"
 
@@ -54,8 +55,8 @@ class Request : public std::enable_shared_from_this<Request> {
  public:
   struct Context {
     const Access& access;
-    std::string_view page;
-    std::function<void(beast::tcp_stream, const http::request<http::empty_body>&)> connect;
+    std::string_view page, watching_page;
+    std::function<void(beast::tcp_stream, const http::request<http::empty_body>&)> connect, watch;
     std::list<Request*>& strangers;  ///< that have not shown the token, oldest first
   };
 
@@ -100,7 +101,10 @@ class Request : public std::enable_shared_from_this<Request> {
     if (target.path != "/") return refuse(http::status::not_found, "There is nothing here.\n");
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return refuse(http::status::method_not_allowed, "Only GET and HEAD are supported.\n");
-    if (!context_.access.knows_token(target.token)) {
+    if (context_.access.may_watch(target.token)) {
+      context_.strangers.remove(this);
+      respond(http::status::ok, "text/html; charset=utf-8", context_.watching_page);
+    } else if (!context_.access.knows_token(target.token)) {
       respond(http::status::forbidden, "text/html; charset=utf-8", no_token_page);
     } else {
       context_.strangers.remove(this);
@@ -112,6 +116,7 @@ class Request : public std::enable_shared_from_this<Request> {
     const auto& request = parser_.get();
     if (!Access::is_own_origin(text(request[http::field::origin]), host))
       return refuse(http::status::forbidden, "Pages of other sites have no access.\n");
+    if (context_.access.may_watch(token)) return context_.watch(std::move(stream_), request);
     if (!context_.access.knows_token(token)) return refuse(http::status::forbidden, "The token is wrong.\n");
     context_.connect(std::move(stream_), request);
   }
@@ -179,10 +184,14 @@ class Server::Implementation {
       : options_(options),
         acceptor_(listen(sockets_, options)),
         access_(options.address, acceptor_.local_endpoint().port(),
-                options.token.empty() ? make_token() : options.token),
+                options.token.empty() ? make_token() : options.token,
+                options.watching_page.empty() ? "" : make_token()),
         requests_{
-            access_, options.page,
+            access_, options.page, options.watching_page,
             [this](beast::tcp_stream stream, const auto& request) { connect(std::move(stream), request); },
+            [this](beast::tcp_stream stream, const auto& request) {
+              spectators_.accept(std::move(stream), request);
+            },
             strangers_},
         clock_(sockets_),
         session_(std::move(session), listener()) {}
@@ -260,6 +269,7 @@ class Server::Implementation {
     clock_.async_wait([this](error_code error) {
       if (!error) sockets_.stop();
     });
+    spectators_.close(code, reason);
     if (!page_) return sockets_.stop();
     page_->close(code, reason, [this] { sockets_.stop(); });
   }
@@ -292,7 +302,9 @@ class Server::Implementation {
   SessionThread::Listener listener() {
     return {[this](PageNumber number, Message message) {
               asio::post(sockets_, [this, number, message] {
-                if (page_ && page_number_ == number) page_->send(message);
+                if (!page_ || page_number_ != number) return;
+                if (!options_.watching_page.empty()) spectators_.relay(message);
+                page_->send(message);
               });
             },
             [this] {
@@ -318,6 +330,7 @@ class Server::Implementation {
   asio::steady_timer clock_;
   asio::steady_timer clock_of_retry_{sockets_};
   std::shared_ptr<Page> page_;
+  Spectators spectators_{options_.patience};
   PageNumber page_count_ = 0, page_number_ = 0;
   bool is_ending_ = false, has_failed_ = false;
   std::exception_ptr failure_;
@@ -340,6 +353,13 @@ const std::string& Server::token() const {
 std::string Server::url() const {
   const std::string scheme = "http://";
   return scheme + implementation_->access().host() + "/?token=" + token();
+}
+
+std::string Server::watching_url() const {
+  const Access& access = implementation_->access();
+  if (access.watching_token().empty()) return "";
+  const std::string scheme = "http://";
+  return scheme + access.host() + "/?token=" + access.watching_token();
 }
 
 void Server::wake() {

@@ -26,6 +26,9 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< an IP address; see `is_loopback`
   std::uint16_t port = 0;             ///< 0: any free port
   std::string_view page{};            ///< HTML; must outlive the server
+  /// HTML for those who may only watch, with a token of their own; empty: nobody may only watch. Must outlive
+  /// the server.
+  std::string_view watching_page{};
   /// A page that is silent for this long is disconnected. It gets a ping before that.
   std::chrono::milliseconds patience{30'000};
   std::string token{};  ///< empty: a new random token; see `token_of_file`
@@ -35,7 +38,7 @@ struct ServerOptions {
 /// Whether only programs on this machine can reach the address. Throws `Error` for an invalid IP address.
 bool is_loopback(const std::string& address);
 
-/// Serves a session to one page at a time (docs/protocol.md). A client must address the server by its own
+/// Serves a session to one page at a time, and to others that only watch (docs/protocol.md). A client must address the server by its own
 /// address, which excludes pages of other sites, and must know a random token.
 class Server {
  public:
@@ -49,6 +52,8 @@ class Server {
   const std::string& token() const;
   /// The address to open in a browser. When the server listens on all interfaces, one that others can use.
   std::string url() const;
+  /// The address for those who may only watch; empty without a page for them.
+  std::string watching_url() const;
 
   /// The session has something to do: a program has come to a step. Any thread can call it.
   void wake();

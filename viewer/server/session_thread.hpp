@@ -24,7 +24,7 @@ using PageNumber = std::uint64_t;
 /// A message and the memory that holds it.
 struct Message {
   std::span<const std::byte> bytes;
-  std::shared_ptr<const MessageWriter> memory;
+  std::shared_ptr<const void> memory;
 };
 
 /// Runs a session on its own thread, so that the simulation does not wait for sockets nor sockets for the

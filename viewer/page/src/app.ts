@@ -167,6 +167,7 @@ export class App {
       this.showProjection();
     };
     const hover = new Hover(this.canvas, model, view.pointing);
+    this.body.classList.toggle("watches", this.client.watches);
     this.body.append(
       this.header(), program.banner, this.scenePanel.element, details, this.player.element, this.help, this.framesDialog.element, this.views.dialog,
       this.palette.element, frames.element, hover.element,
@@ -336,7 +337,7 @@ export class App {
   }
 
   private showStatus(status: Status): void {
-    const words = { connecting: "connecting", connected: this.carriesLibrary ? "in this page" : "live", ended: "ended" };
+    const words = { connecting: "connecting", connected: this.carriesLibrary ? "in this page" : this.client.watches ? "watching" : "live", ended: "ended" };
     this.connection.textContent = words[status.state];
     this.connection.dataset["state"] = status.state;
     if (status.state === "ended" && this.film_.running) this.film();

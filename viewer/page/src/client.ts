@@ -26,6 +26,8 @@ const PAUSES_MILLISECONDS = [250, 500, 1000, 2000, 5000];
 
 export class Client extends Emitter<ClientEvents> {
   status: Status = { state: "connecting" };
+  /** Whether this page has no commands: it sees what the page that controls the session gets. */
+  readonly watches = document.getElementById("supple-spectator") !== null;
   private transport: Transport | null = null;
   private scene: SceneCounts | null = null;
   private credit = 0;
@@ -72,7 +74,7 @@ export class Client extends Emitter<ClientEvents> {
   }
 
   send(command: Record<string, unknown>): void {
-    if (this.status.state !== "ended") this.transport?.send(command);
+    if (this.status.state !== "ended" && !this.watches) this.transport?.send(command);
   }
 
   /** Sends a result to the program (docs/protocol.md): what it is, and the content of a file. */
@@ -86,6 +88,7 @@ export class Client extends Emitter<ClientEvents> {
   /** Sends a command that has an answer. */
   ask(command: Record<string, unknown>): Promise<Record<string, unknown>> {
     if (this.status.state === "ended") return Promise.reject(new Error("there is no session"));
+    if (this.watches) return Promise.reject(new Error("this page only watches"));
     const id = this.nextId++;
     return new Promise((resolve, reject) => {
       this.questions.set(id, { resolve, reject });

@@ -4,6 +4,7 @@ import { sidesOf, type ContactKey } from "./contacts";
 import { Emitter } from "./emitter";
 import { firstChoice, type FieldChoice } from "./fields/fields";
 import { EVENT_KINDS, type EventKind, type FrameMessage, type SceneMessage, type SceneObject, type SceneText, type SeriesMessage } from "./protocol/messages";
+import { shiftFrame, shiftOf } from "./shift";
 
 export interface ObjectState {
   index: number;
@@ -220,12 +221,15 @@ export class Model extends Emitter<ModelEvents> {
   explained: { object: number; triangle: number }[] = [];
   explanation: Explanation | null = null;
   wasPulled = false;  // in this run
+  /** How far the objects of a second recording stand beside the first; 0 over them. */
+  shift = 0;
 
   takeScene(message: SceneMessage): void {
     const before = this.scene;
     const old = this.objects;
     this.scene = message.text;
     this.frame = null;
+    if (!message.text.comparison) this.shift = 0;
     this.positions = new Float32Array(3 * message.text.objects.reduce((sum, object) => sum + object.vertices, 0));
     let first = 0;
     this.objects = message.text.objects.map((object, index) => {
@@ -270,7 +274,9 @@ export class Model extends Emitter<ModelEvents> {
       const object = this.objects[index]!;
       object.positions.set(positions);
       object.bounds = undefined;
+      if (this.isShifted(index)) this.shiftObject(object, this.shift);
     }
+    if (this.shift !== 0) shiftFrame(message, this.scene.comparison!.objects_of_a, this.shift);
     this.frame = message;
     this.framesSeen += 1;
     if (this.scene.source !== "recording" && !message.text.past) this.remember(message);
@@ -295,6 +301,30 @@ export class Model extends Emitter<ModelEvents> {
     for (const kind of EVENT_KINDS)
       this.history.events[kind] = { begin: eventsOf(message.events[kind].begin), end: eventsOf(message.events[kind].end) };
     this.emit("history", null);
+  }
+
+  private isShifted(index: number): boolean {
+    return this.shift !== 0 && index >= this.scene!.comparison!.objects_of_a;
+  }
+
+  private shiftObject(object: ObjectState, by: number): void {
+    for (let i = 0; i < object.positions.length; i += 3) object.positions[i]! += by;
+    object.bounds = undefined;
+  }
+
+  /** Sets the objects of the second recording beside those of the first, or over them. */
+  setSideBySide(on: boolean): void {
+    const { scene, frame } = this;
+    const shift = on && scene?.comparison ? shiftOf(scene) : 0;
+    const by = shift - this.shift;
+    if (by === 0) return;
+    const first = scene!.comparison!.objects_of_a;
+    for (const object of this.objects) if (object.index >= first) this.shiftObject(object, by);
+    this.shift = shift;
+    if (!frame) return;
+    shiftFrame(frame, first, by);
+    for (const { index, positions } of this.objects) if (index >= first) frame.positions.set(index, new Float32Array(positions));
+    this.emit("frame", frame);
   }
 
   /** Adds the steps since the last frame, with their events. */

@@ -77,6 +77,10 @@ class MessageWriter {
     std::byte* const data = add_section(tag, object, count, count * sizeof(Element));
     return {reinterpret_cast<Element*>(data), count};
   }
+  /// Adds a section of `count` elements that take `length` bytes.
+  std::span<std::byte> add_bytes(Tag tag, std::uint32_t object, std::size_t count, std::size_t length) {
+    return {add_section(tag, object, count, length), length};
+  }
   template <class Element>
   std::span<Element> add(Tag tag, std::size_t count) {
     return add<Element>(tag, no_object, count);

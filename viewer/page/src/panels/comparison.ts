@@ -2,7 +2,7 @@
 import { usualLook, type Model } from "../model";
 import { h, readable } from "./dom";
 
-const CHOICES = ["both", "A", "B"] as const;
+const CHOICES = ["both", "beside", "A", "B"] as const;
 type Choice = (typeof CHOICES)[number];
 
 export class ComparisonPanel {
@@ -24,7 +24,7 @@ export class ComparisonPanel {
     this.sentence.textContent = text === "" ? "The two recordings are equal." : frame === null ? `They differ: ${text}` : `They differ first in frame ${readable(frame)}: ${text}`;
     this.go.hidden = frame === null;
     this.choices.clear();
-    const label: Record<Choice, string> = { both: "Both, B transparent", A: `A: ${names[0]}`, B: `B: ${names[1]}` };
+    const label: Record<Choice, string> = { both: "Over each other, B transparent", beside: "Side by side", A: `A: ${names[0]}`, B: `B: ${names[1]}` };
     const rows = CHOICES.map((choice) => {
       const input = h("input", { type: "radio", name: "compared", onchange: () => this.show(choice) });
       this.choices.set(choice, input);
@@ -40,10 +40,11 @@ export class ComparisonPanel {
 
   private show(choice: Choice): void {
     for (const object of this.model.objects) {
-      object.visible = choice === "both" || (choice === "A") === this.isOfA(object.index);
-      // A recording that is alone is opaque.
-      object.opacity = choice === "B" ? 1 : usualLook(this.model.scene!, object.index).opacity;
+      object.visible = choice === "both" || choice === "beside" || (choice === "A") === this.isOfA(object.index);
+      // A recording that hides nothing is opaque.
+      object.opacity = choice === "B" || choice === "beside" ? 1 : usualLook(this.model.scene!, object.index).opacity;
     }
+    this.model.setSideBySide(choice === "beside");
     this.model.emit("display", null);
     this.model.emit("request", null);
   }
@@ -52,7 +53,7 @@ export class ComparisonPanel {
     if (!this.model.scene?.comparison) return;
     const { objects } = this.model;
     const sees = (a: boolean) => objects.some(({ index, visible }) => visible && this.isOfA(index) === a);
-    const choice: Choice = sees(true) && sees(false) ? "both" : sees(true) ? "A" : "B";
+    const choice: Choice = sees(true) && sees(false) ? (this.model.shift !== 0 ? "beside" : "both") : sees(true) ? "A" : "B";
     this.choices.get(choice)!.checked = true;
   }
 }

@@ -60,6 +60,8 @@ function wordsOf(status: Extract<Status, { state: "ended" }>, carriesLibrary: bo
       return { title: "Connection lost", text: "The program has ended or the network has failed. The page shows the last frame and connects again by itself.", again: "Reconnect now" };
     case "other-token":
       return { title: "The program has another address now", text: "It was started again. Open the address that it prints. With supple view --port and --token-file the address stays the same.", again: "Reconnect" };
+    case "crowded":
+      return { title: "Too many pages watch", text: "Close another page that watches this session, then try again.", again: "Try again" };
     case "taken-over":
       return { title: "Open in another page", text: "Another page has taken over this session. Only one page at a time can show a session.", again: "Take it back" };
     case "program-ended":

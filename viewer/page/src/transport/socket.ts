@@ -1,6 +1,6 @@
 import type { EndReason, Transport, TransportEvents } from "./transport";
 
-const REASONS: Record<number, EndReason> = { 4001: "taken-over", 4002: "program-ended", 4003: "refused", 4004: "failed" };
+const REASONS: Record<number, EndReason> = { 4001: "taken-over", 4002: "program-ended", 4003: "refused", 4004: "failed", 4005: "crowded" };
 
 /** Bytes of results that wait to be sent. */
 const MOST_BUFFERED = 64_000_000;

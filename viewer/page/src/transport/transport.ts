@@ -1,5 +1,5 @@
 /** Why the session ended. */
-export type EndReason = "lost" | "other-token" | "taken-over" | "program-ended" | "refused" | "failed";
+export type EndReason = "lost" | "other-token" | "taken-over" | "program-ended" | "refused" | "failed" | "crowded";
 
 export interface TransportEvents {
   open(): void;
