@@ -210,7 +210,7 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
              options.budget.history_bytes = 1e6 * static_cast<double>(megabytes);
            },
            "Memory in MB for the positions of the last steps of a simulation, which the page can "
-           "go back to; 0 keeps none (default: 500)")),
+           "go back to; with 0 it keeps none, and objects have no speeds (default: 500)")),
        is_served, no_export});
   dependences.push_back({group(app->add_flag("--follow", options.follow,
                                              "Show the frames of a recording that is still being written as "

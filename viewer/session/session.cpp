@@ -107,7 +107,8 @@ std::span<const std::byte> Session::Implementation::next_message(MessageWriter& 
     has_news_ = false;
     if (!pack_frame(message)) return next_message(message);
     has_sent_frame_ = true;
-    if (ProgramSource* const source = stage_->program()) source->program().take_frame();
+    if (ProgramSource* const source = stage_->program(); source != nullptr && !is_past_)
+      source->program().take_frame();
     --credit_;
   } else {
     return {};

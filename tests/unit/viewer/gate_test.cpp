@@ -140,9 +140,9 @@ TEST_F(WatchedProgram, PinsAreMeasuredInStepsWithoutAFrame) {
   ASSERT_TRUE(until([&] { return !frames_.empty(); }));
   std::vector<std::string> names{"step", "time"};
   for (const Json& value : scenes_[0].json["pin_values"]) names.push_back(value["key"]);
-  const auto values = frames_[0].values<double>(61, 4);
+  const auto values = frames_[0].values<double>(63, 4);
   ASSERT_EQ(values.size(), 7 * names.size());
-  EXPECT_EQ(frames_[0].values<double>(61, 5).size(), values.size());
+  EXPECT_EQ(frames_[0].values<double>(63, 5).size(), values.size());
   for (std::size_t step = 0; step < 7; ++step) {
     const auto number = [&](const char* name) {
       const auto at = std::find(names.begin(), names.end(), name) - names.begin();

@@ -13,7 +13,7 @@
 namespace supple::viewer {
 namespace {
 
-constexpr std::uint32_t pin_rows = 61;
+constexpr std::uint32_t pin_rows = 63;
 
 /// A row of a pin by the names of its numbers.
 using PinNumbers = std::map<std::string, double>;

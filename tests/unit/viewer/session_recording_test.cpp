@@ -156,7 +156,7 @@ TEST(ViewerRecording, PinsHaveTheirSpeedInEachFrameThatIsVisited) {
   for (const std::uint32_t number : {12u, 3u, 4u, 29u}) {
     page.ask({{"do", "seek"}, {"frame", number}});
     page.session.advance(0);
-    const auto row = page.frame().values<double>(61, 1);
+    const auto row = page.frame().values<double>(63, 1);
     ASSERT_EQ(row.size(), 2 + names.size());
     EXPECT_EQ(row[0], number);
     const double time =
@@ -166,7 +166,7 @@ TEST(ViewerRecording, PinsHaveTheirSpeedInEachFrameThatIsVisited) {
   recorded.frames->damaged = {19};
   page.ask({{"do", "seek"}, {"frame", 20}});
   page.session.advance(0);
-  EXPECT_TRUE(std::isnan(page.frame().values<double>(61, 1)[speed])) << "the frame before cannot be read";
+  EXPECT_TRUE(std::isnan(page.frame().values<double>(63, 1)[speed])) << "the frame before cannot be read";
 }
 
 TEST(ViewerRecording, EachFrameIsDetectedAsItWas) {

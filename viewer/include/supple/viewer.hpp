@@ -47,7 +47,7 @@ struct AttachOptions {
   /// no page is connected.
   bool wait_for_page = false;
   /// Memory in bytes for the positions of the last steps that the page got, at least 0. The page can go back
-  /// to these steps; 0 keeps none.
+  /// to these steps, and computes speeds from them; 0 keeps none.
   double history_bytes = 5e8;
   BreakOptions breaks{};
 };

@@ -14,7 +14,7 @@ const sceneOf = (changes: object = {}): SceneMessage =>
 
 /** Rows of a pin that have the same number in all values. */
 const rowsOf = (pin: number, rows: [step: number, value: number][]): Section =>
-  ({ tag: 61, object: pin, count: rows.length, data: new Float64Array(rows.flatMap(([step, value]) => [step, step / 10, ...VALUES.map(() => value)])) });
+  ({ tag: 63, object: pin, count: rows.length, data: new Float64Array(rows.flatMap(([step, value]) => [step, step / 10, ...VALUES.map(() => value)])) });
 
 function pinned() {
   const model = new Model();
