@@ -6,7 +6,6 @@
 #include "commands/diff.hpp"
 #include "commands/info.hpp"
 #include "commands/simulate.hpp"
-#include "view/view.hpp"
 #include "moving/launcher.hpp"
 #include "moving/ranks.hpp"
 #include "options/options.hpp"
@@ -14,6 +13,7 @@
 #include "query/query.hpp"
 #include "render/render.hpp"
 #include "supple/error.hpp"
+#include "view/view.hpp"
 
 namespace supple::cli {
 namespace {

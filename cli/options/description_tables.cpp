@@ -337,7 +337,8 @@ void print_view_members() {
   fmt::print(
       "// `make docs` writes this file from viewer/view_file/view_members.hpp.\n\n"
       "export interface ViewMember {{\n  path: string;\n"
-      "  kind: \"number\" | \"whole\" | \"truth\" | \"word\" | \"colour\" | \"text\" | \"key\" | \"point\" | \"interval\" | "
+      "  kind: \"number\" | \"whole\" | \"truth\" | \"word\" | \"colour\" | \"text\" | \"key\" | \"point\" | "
+      "\"interval\" | "
       "\"objects\";\n"
       "  /** What a value must be, in words. */\n  range: string;\n"
       "  /** Of numbers; `above` excludes the lowest number. */\n  low: number;\n  high: number;\n  above: "

@@ -91,11 +91,11 @@ struct ViewOptions : MethodOptions {
   bool open_browser = true;
   viewer::MemoryBudget budget;
   bool has_spectators = false;  ///< pages that may only watch
-  bool follow = false;    ///< a recording that is still being written
-  std::string compared;   ///< a recording to compare with; empty: none
-  double tolerance = 0;   ///< of that comparison, in units of length
-  std::string page_file;  ///< file to write instead of serving; empty: serve
-  std::string view_file;  ///< camera, layers and colours; empty: those of the page
+  bool follow = false;          ///< a recording that is still being written
+  std::string compared;         ///< a recording to compare with; empty: none
+  double tolerance = 0;         ///< of that comparison, in units of length
+  std::string page_file;        ///< file to write instead of serving; empty: serve
+  std::string view_file;        ///< camera, layers and colours; empty: those of the page
 };
 
 /// The largest width and height of a picture.

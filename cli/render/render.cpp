@@ -17,7 +17,6 @@
 #include "base/output_names.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
-#include "view/build_scene_view.hpp"
 #include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
@@ -29,6 +28,7 @@
 #include "session/messages/json_value.hpp"
 #include "session/messages/mesh_warnings.hpp"
 #include "supple/error.hpp"
+#include "view/build_scene_view.hpp"
 #include "view_file/view_file.hpp"
 
 namespace supple::cli {

@@ -132,10 +132,10 @@ void compare(viewer::SceneView& show, const Input& input, const ViewOptions& opt
     throw Error(fmt::format("--compare: {} is not a recording; compare two recordings", options.compared));
   const Input other = read_recording(options.compared);
   const auto a = recording_of(input), b = recording_of(other);
-  if (!a || !b)
-    throw Error(fmt::format("--compare: nothing moves in {}", a ? options.compared : first));
+  if (!a || !b) throw Error(fmt::format("--compare: nothing moves in {}", a ? options.compared : first));
   show.title = fmt::format("{} and {}", show.title, title_of({options.compared}));
-  viewer::Comparison comparison{{title_of({first}), title_of({options.compared})}, show.objects.size(), {}, {}};
+  viewer::Comparison comparison{
+      {title_of({first}), title_of({options.compared})}, show.objects.size(), {}, {}};
   show.frames = std::make_shared<ComparedFrames>(
       show.frames, std::make_shared<RecordedFrames>(options.compared, b, false), show.objects.size());
   for (const InputObject& object : other.objects) show.objects.push_back(object_of(object));

@@ -118,7 +118,8 @@ ComparedFrames::ComparedFrames(std::shared_ptr<const viewer::Frames> a,
         (to.*side).push_back({event.frame, event.a + shift, event.b + shift});
     }
   };
-  for (const auto kind : {&viewer::Series::contacts, &viewer::Series::narrow_phase, &viewer::Series::volumes}) {
+  for (const auto kind :
+       {&viewer::Series::contacts, &viewer::Series::narrow_phase, &viewer::Series::volumes}) {
     add(series_.*kind, first.*kind, 0);
     add(series_.*kind, second.*kind, static_cast<std::uint32_t>(objects_of_a_));
   }

@@ -14,7 +14,6 @@
 #include "base/missing_threads.hpp"
 #include "base/output_names.hpp"
 #include "base/text.hpp"
-#include "view/build_scene_view.hpp"
 #include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
@@ -26,6 +25,7 @@
 #include "session/packed/packed_scene.hpp"
 #include "session/session.hpp"
 #include "supple/error.hpp"
+#include "view/build_scene_view.hpp"
 #include "view_file/view_file.hpp"
 
 namespace supple::cli {

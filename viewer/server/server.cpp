@@ -187,7 +187,9 @@ class Server::Implementation {
                 options.token.empty() ? make_token() : options.token,
                 options.watching_page.empty() ? "" : make_token()),
         requests_{
-            access_, options.page, options.watching_page,
+            access_,
+            options.page,
+            options.watching_page,
             [this](beast::tcp_stream stream, const auto& request) { connect(std::move(stream), request); },
             [this](beast::tcp_stream stream, const auto& request) {
               spectators_.accept(std::move(stream), request);

@@ -67,7 +67,8 @@ void Spectators::relay(const Message& message) {
   const MessageKind kind = kind_of(message.bytes);
   if (kind != MessageKind::scene && kind != MessageKind::series && kind != MessageKind::frame) return;
   // The memory of the message is written again when the controlling page has it.
-  const auto copy = std::make_shared<const std::vector<std::byte>>(message.bytes.begin(), message.bytes.end());
+  const auto copy =
+      std::make_shared<const std::vector<std::byte>>(message.bytes.begin(), message.bytes.end());
   if (kind == MessageKind::scene) {
     scene_ = copy;
     series_ = frame_ = nullptr;
@@ -117,8 +118,8 @@ Message Spectators::whole_frame() const {
   const auto writer = std::make_shared<MessageWriter>();
   writer->begin(MessageKind::frame);
   const auto add = [&](const Section& section) {
-    const auto to = writer->add_bytes(static_cast<Tag>(section.tag), section.object, section.count,
-                                      section.data.size());
+    const auto to =
+        writer->add_bytes(static_cast<Tag>(section.tag), section.object, section.count, section.data.size());
     std::copy(section.data.begin(), section.data.end(), to.begin());
   };
   for (const auto& [object, positions] : positions_)

@@ -12,8 +12,8 @@
 
 namespace supple::viewer {
 
-/// Pages that watch what the controlling page gets. They have no commands. A message is never kept waiting for
-/// them: one that is still sending misses frames, and then gets all positions. All calls on the network
+/// Pages that watch what the controlling page gets. They have no commands. A message is never kept waiting
+/// for them: one that is still sending misses frames, and then gets all positions. All calls on the network
 /// thread.
 class Spectators {
  public:

@@ -82,8 +82,8 @@ struct SceneView {
   std::string title{};
   SimulationOptions simulation{};
   std::vector<ViewedObject> objects{};
-  std::shared_ptr<Frames> frames{};    ///< only of a recording
-  std::shared_ptr<Program> program{};  ///< only of a running program
+  std::shared_ptr<Frames> frames{};        ///< only of a recording
+  std::shared_ptr<Program> program{};      ///< only of a running program
   std::optional<Comparison> comparison{};  ///< only of two recordings
 };
 

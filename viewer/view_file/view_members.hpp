@@ -11,7 +11,18 @@ namespace supple::viewer {
 // What a view file contains. The checks of the program and of the page
 // (viewer/page/src/protocol/view_members.ts) and the table of docs/view_file.md are made from this list.
 
-enum class ViewValue : std::uint8_t { number, whole, truth, word, colour, text, key, point, interval, objects };
+enum class ViewValue : std::uint8_t {
+  number,
+  whole,
+  truth,
+  word,
+  colour,
+  text,
+  key,
+  point,
+  interval,
+  objects
+};
 
 struct ViewMember {
   const char* path;  ///< names from the outside to the inside, with dots; `*` is any name
@@ -67,11 +78,13 @@ inline constexpr std::array view_members = std::to_array<ViewMember>({
     {"marks.slice_at", ViewValue::number, "place of the cut along its axis", ValueRange::from(0, 1)},
     {"marks.slice_flipped", ViewValue::truth, "whether the cut removes the other side"},
     {"marks.up", ViewValue::word, "upward axis", {}, "y z"},
-    {"field.key", ViewValue::key, "the field that the page shows, by its key in the list of fields; null for none"},
+    {"field.key", ViewValue::key,
+     "the field that the page shows, by its key in the list of fields; null for none"},
     {"field.map", ViewValue::word, "its colours", {}, "viridis cividis magma inferno coolwarm"},
-    {"field.range", ViewValue::interval, "the values at the ends of the colours; null for those of the frame"},
-    {"field.arrow_length", ViewValue::number, "length of the longest arrow of a field of vectors in CSS pixels",
-     ValueRange::above(0)},
+    {"field.range", ViewValue::interval,
+     "the values at the ends of the colours; null for those of the frame"},
+    {"field.arrow_length", ViewValue::number,
+     "length of the longest arrow of a field of vectors in CSS pixels", ValueRange::above(0)},
     {"marks.hover", ViewValue::truth, "whether the resting pointer shows values"},
     {"objects.*.visible", ViewValue::truth,
      "whether the objects of this name are visible; an object that is not listed is visible and opaque, and "

@@ -56,7 +56,8 @@ class ViewerServer : public testing::Test {
   }
 
   void start(SceneView show = small_show(), std::chrono::milliseconds patience = 30s, Drawing drawing = {}) {
-    server_.emplace(Session(std::move(show)), ServerOptions{"127.0.0.1", 0, page, patience, "", drawing});
+    server_.emplace(Session(std::move(show)),
+                    ServerOptions{.page = page, .patience = patience, .drawing = drawing});
     thread_ = std::thread([this] {
       try {
         server_->run([this] { return should_end_.load(); });

@@ -312,10 +312,10 @@ TEST(ViewerRecording, ComparedRecordingsDoNotTouchEachOther) {
   show.comparison = Comparison{{"a.h5", "b.h5"}, count, 7, "a vertex differs"};
   TestPage page(show);
   const Json scene = opening(page)[0].json;
-  EXPECT_EQ(scene["comparison"], (Json{{"names", {"a.h5", "b.h5"}},
-                                       {"objects_of_a", count},
-                                       {"frame", 7},
-                                       {"text", "a vertex differs"}}));
+  EXPECT_EQ(
+      scene["comparison"],
+      (Json{
+          {"names", {"a.h5", "b.h5"}}, {"objects_of_a", count}, {"frame", 7}, {"text", "a vertex differs"}}));
   page.ask({{"do", "layers"}, {"colliding_vertices", true}});
   std::size_t most = 0;
   for (const std::uint64_t frame : {0u, 20u, 40u, 59u}) {

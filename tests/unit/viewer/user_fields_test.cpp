@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "session/pins/pin_meter.hpp"
 #include "session/program/program_source.hpp"
 #include "supple/error.hpp"
 #include "support/viewer_page.hpp"
@@ -41,6 +42,8 @@ struct StillProgram final : Program {
   void set_breaks(const BreakOptions&) override {}
   ProgramState state() const override { return status; }
   std::vector<StepRow> take_rows() override { return {}; }
+  void set_pins(std::vector<Pin>) override {}
+  std::vector<PinRow> take_pin_rows() override { return {}; }
   double time_step() const override { return 0.5; }
   std::vector<UserField> fields() const override { return user.list(); }
   std::shared_ptr<const std::vector<double>> field_values(std::string_view name,

