@@ -820,7 +820,7 @@ CONTRACTS = {
     'viewer::View::seconds_in_steps':
         'time that frames have taken, without pauses',
     'viewer::View::set_breaks':
-        'the program waits, or will in the next step',
+        'Throws `Error` when the last step did not detect the kind of contacts that an event needs.',
     'viewer::View::set_field':
         "Shows the user's own numbers as the field `name`, which the page can choose: one for each vertex of an object, or one for each triangle. Frames from the next `detect` on have them, until they are set again. NaN is no value, and no numbers end the field of the object. Without an element, the count decides, and a count that fits both is that of vertices. All objects of a field have the same element. Copies the numbers, O(n). Any thread can call it while nothing adds or removes objects. Throws `Error` when the count fits neither vertices nor triangles of the object, or not the element, when the name is empty or not UTF-8, and when other objects have this field with another element, or as vectors.",
     'viewer::View::step_count':
@@ -830,7 +830,7 @@ CONTRACTS = {
     'viewer::View::wait':
         'Shows the last step until the page continues the program, the view is closed, or a stop is requested. The scene must exist, and must not have been moved.',
     'viewer::attach':
-        "Shows a scene in a page while the program runs: from now on, `detect` shows its result. Replaces the observer of the scene. The page can pause the program in `detect`, take single steps, and set breaks. The page reads the user's scene itself, only while `detect` waits. Threads: one for the session, one for the network. Throws `Error` when an option is out of range, when the address is not available, and when the library was built without SUPPLE_BUILD_VIEWER.",
+        "Shows a scene in a page while the program runs: from now on, `detect` shows its result. Replaces the observer of the scene. The page can pause the program in `detect`, take single steps, and set breaks. The page reads the user's scene itself, only while `detect` waits. Threads: one for the session, one for the network. Throws `Error` when an option is out of range, when the scene does not detect the kind of contacts that a break needs, when the address is not available, and when the library was built without SUPPLE_BUILD_VIEWER.",
     'visit_field':
         'Visits a member of a record; `key` is its name for users.',
     'welded':

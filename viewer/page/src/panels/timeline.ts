@@ -76,7 +76,7 @@ export class Timeline {
       : this.from !== null ? ["A–…", `The section starts at step ${readable(this.from)}. Go to its end and press again (Shift+L)`] : ["A–B", "Loop a section: press at its start, and again at its end (Shift+L)"];
     this.section.textContent = text;
     this.section.title = title;
-    this.section.setAttribute("aria-label", title);
+    this.section.setAttribute("aria-label", `${text} ${title}`);
     this.section.setAttribute("aria-pressed", String(this.looped !== null));
   }
 
