@@ -23,7 +23,7 @@ if [ "${1:-}" != "--without-viewer" ]; then
   command -v npm >/dev/null || packages+=(nodejs npm)
 fi
 if [ "${1:-}" = "--ci" ]; then
-  packages+=(git libclang-rt-19-dev clang-format python3-clang-19 python3-h5py python3-jinja2 chromium chromium-headless-shell libopenmpi-dev libtrilinos-zoltan-dev)
+  packages+=(git libclang-rt-19-dev clang-format python3-clang-19 python3-h5py python3-jinja2 chromium chromium-headless-shell firefox-esr xvfb xauth libgl1-mesa-dri libpci3 libopenmpi-dev libtrilinos-zoltan-dev)
 fi
 if [ "${1:-}" = "--ci" ] || [ "${1:-}" = "--python" ]; then
   packages+=(python3-venv python3-dev openmpi-bin)

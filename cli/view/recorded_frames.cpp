@@ -14,6 +14,7 @@ namespace supple::cli {
 
 RecordedFrames::RecordedFrames(std::string path, std::shared_ptr<const Recording> recording, bool is_growing)
     : path_(std::move(path)), recording_(std::move(recording)), is_growing_(is_growing) {
+  objects_ = objects_of(*recording_);
   std::uint32_t place = 0;
   for (const RecordedObject& object : recording_->header().objects) places_.emplace(object.id, place++);
   // The same names as in frames, so that a page plots both in the same way.
@@ -25,7 +26,7 @@ RecordedFrames::RecordedFrames(std::string path, std::shared_ptr<const Recording
 }
 
 void RecordedFrames::read(std::uint64_t frame, std::size_t object, std::span<Vec3d> positions) const {
-  const std::vector<Vec3d> recorded = recording_->positions(frame, object);
+  const std::vector<Vec3d> recorded = recording().positions(frame, object);
   std::copy(recorded.begin(), recorded.end(), positions.begin());
 }
 
@@ -57,15 +58,16 @@ void RecordedFrames::read_series(Progress* progress) {
   }
 }
 
-bool RecordedFrames::continues(const Recording& recording) const {
-  const auto& before = recording_->header().objects;
-  const auto& now = recording.header().objects;
-  return recording.frame_count() >= count_ &&
-         std::equal(before.begin(), before.end(), now.begin(), now.end(),
-                    [](const RecordedObject& a, const RecordedObject& b) {
-                      return a.id == b.id && a.options.name == b.options.name && a.triangles == b.triangles &&
-                             a.rest_positions.size() == b.rest_positions.size();
-                    });
+std::vector<RecordedFrames::Object> RecordedFrames::objects_of(const Recording& recording) {
+  std::vector<Object> objects;
+  for (const RecordedObject& object : recording.header().objects)
+    objects.emplace_back(object.id, object.options.name, object.rest_positions.size(), object.triangles.size());
+  return objects;
+}
+
+const Recording& RecordedFrames::recording() const {
+  if (recording_ == nullptr) recording_ = std::make_shared<const Recording>(path_);
+  return *recording_;
 }
 
 bool RecordedFrames::refresh() {
@@ -73,18 +75,17 @@ bool RecordedFrames::refresh() {
   const FileState now = state_of_file();
   if (now == file_) return false;
   file_ = now;
-  std::shared_ptr<const Recording> recording;
+  recording_.reset();
   try {
-    recording = std::make_shared<const Recording>(path_);
+    recording();
   } catch (const Error&) {
     return false;  // it is being replaced; the next change is looked at again
   }
-  if (!continues(*recording)) {
+  if (recording_->frame_count() < count_ || objects_of(*recording_) != objects_) {
     is_growing_ = false;
     throw Error(path_ + ": has been recorded anew; open it again");
   }
   const std::uint64_t before = count_;
-  recording_ = std::move(recording);
   read_series(nullptr);
   return count_ > before;
 }

@@ -7,7 +7,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "base/progress.hpp"
 #include "session/scene_view.hpp"
@@ -19,7 +21,7 @@ namespace supple::cli {
 class RecordedFrames : public viewer::Frames {
  public:
   /// Reads times, statistics and events of all frames. With `is_growing`, `refresh` looks for more of them in
-  /// the file.
+  /// the file; nobody else may then keep the recording.
   RecordedFrames(std::string path, std::shared_ptr<const Recording> recording, bool is_growing);
 
   /// Frames that were added are counted when their series has been read.
@@ -32,12 +34,18 @@ class RecordedFrames : public viewer::Frames {
  private:
   using FileState = std::pair<std::filesystem::file_time_type, std::uintmax_t>;  // last change, size
 
+  /// Id, name, vertices and triangles.
+  using Object = std::tuple<ObjectId, std::string, std::size_t, std::size_t>;
+
   FileState state_of_file() const;
-  bool continues(const Recording& recording) const;
+  static std::vector<Object> objects_of(const Recording& recording);
+  const Recording& recording() const;
   void read_series(Progress* progress);
 
   std::string path_;
-  std::shared_ptr<const Recording> recording_;
+  /// Null when it could not be opened again. HDF5 reads a file again only when nobody has it open.
+  mutable std::shared_ptr<const Recording> recording_;
+  std::vector<Object> objects_;
   std::map<ObjectId, std::uint32_t> places_;
   std::uint64_t count_ = 0;
   viewer::Series series_;

@@ -97,19 +97,24 @@ int serve(viewer::SceneView show, const ViewOptions& options, std::string_view p
   return exit_done;
 }
 
+/// The input is not kept: a recording that grows must have no other owner.
+viewer::SceneView read_show(const ViewOptions& options) {
+  Input input = read_view_input(options);
+  print_notes(input);
+  check_output_names({{"--export", options.page_file}, {"--view", options.view_file}}, input.files);
+  apply(options, input);
+  return build_scene_view(input, options);
+}
+
 }  // namespace
 
 int run_view(const ViewOptions& options) {
   check_viewer();
   const std::string view = options.view_file.empty() ? "" : viewer::read_view(options.view_file);
-  Input input = read_view_input(options);
-  print_notes(input);
   const std::string page = view.empty()
                                ? std::string(viewer::embedded_page())
                                : viewer::page_with_json(viewer::embedded_page(), "supple-view", view);
-  check_output_names({{"--export", options.page_file}, {"--view", options.view_file}}, input.files);
-  apply(options, input);
-  viewer::SceneView show = build_scene_view(input, options);
+  viewer::SceneView show = read_show(options);
   for (const std::string& warning : viewer::warnings_of_meshes(show))
     fmt::print(stderr, "supple: warning: {}\n", one_line(warning));
   if (!options.page_file.empty()) return write_page(show, options, page);

@@ -103,6 +103,8 @@ class Commands(ProgramTest):
         self.write("points.txt", "0 0 0\n2 0 0\n")
         self.write("rays.txt", "-3 0.1 0.1 1 0 0\n")
         self.assertEqual(self.run_here("simulate", "scenes/nine.toml", "--frames", 2, "--record", "run.h5", "--quiet").status, 0)
+        for name in ("a.h5", "b.h5"):
+            os.symlink(self.folder / "run.h5", self.folder / name)
 
     def check(self, kind, least, options=lambda arguments: arguments):
         commands = [(page, options(arguments)) for page, arguments in commands_of(kind)]
@@ -119,7 +121,9 @@ class Commands(ProgramTest):
     @unittest.skipUnless(HAS_VIEWER, "built without the viewer")
     def test_views_as_exported_pages(self):
         def exported(arguments):
-            kept = [word for word in arguments if word not in ("--no-open", "--port", "8080")]
+            # A file that is exported shows a scene or one whole recording.
+            served = ("--no-open", "--port", "8080", "--follow", "--spectators", "--compare", "b.h5")
+            kept = [word for word in arguments if word not in served]
             return kept if "--export" in kept else [*kept, "--export", "page.html"]
 
         self.check("view", 7, exported)

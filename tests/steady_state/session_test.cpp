@@ -67,7 +67,7 @@ struct Seen {
 
 /// Plays the session step by step and takes each frame. Counts allocations in the last two of four periods.
 Seen play(SceneView show, std::initializer_list<std::string_view> commands = {}) {
-  Session session(std::move(show));
+  Session session(std::move(show), {.history_bytes = 1});  // full after two steps
   MessageWriter message;
   session.greet();
   for (const std::string_view command : commands) session.command(command);

@@ -164,14 +164,17 @@ async function objectsAreSorted(stage) {
   const more = `[[object]]\nname = "plate"\nmodel = "cloth"\ncolumns = 30\nrows = 30\nwidth = 1\ndepth = 1\ntranslate = [0, -4, 0]\n`;
   const { page } = await stage.view(stage.file("crowd.toml", SWAYING_CROWD.replace("[20, 25, 10]", "[4, 4, 4]") + more));
   await settled(page);
-  const first = () => page.getByRole("list", { name: "Objects" }).getByRole("listitem").first().locator(".name .text").textContent();
-  assert.match(await first(), /^ball/);
+  const rows = page.getByRole("list", { name: "Objects" }).getByRole("listitem");
+  // Rows are drawn with the next frame of the page.
+  const isFirst = (name) => rows.first().locator(".name .text").filter({ hasText: name }).waitFor();
+  await isFirst(/^ball/);
   await page.getByRole("button", { name: "Sort by triangles" }).click();
-  assert.equal(await first(), "plate");
+  await isFirst(/^plate$/);
   await page.getByRole("button", { name: "Sort by triangles" }).click();
-  assert.match(await first(), /^ball/);
+  await isFirst(/^ball/);
   await page.getByRole("searchbox", { name: "Filter objects" }).fill("triangles>80");
-  assert.equal(await page.getByRole("list", { name: "Objects" }).getByRole("listitem").count(), 1);
+  await isFirst(/^plate$/);
+  await until(page, () => document.querySelectorAll('[aria-label="Objects"] [role="listitem"], [aria-label="Objects"] li').length === 1);
 }
 
 const palette = (page) => page.getByRole("dialog", { name: "Command palette" });

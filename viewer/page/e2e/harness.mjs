@@ -59,6 +59,9 @@ export function chromiumPath() {
   return places.find((path) => path && existsSync(path));
 }
 
+/** The path of Firefox; undefined when there is none. */
+export const firefoxPath = () => [process.env.SUPPLE_FIREFOX, "/usr/bin/firefox-esr", "/usr/bin/firefox"].find((path) => path && existsSync(path));
+
 /** Balls in wave motion, far apart. A ball of frequency f has 10 f² + 2 vertices and 20 f² triangles. */
 export function swayingBalls(count, frequency) {
   const balls = Array.from({ length: count }, (_, i) => `

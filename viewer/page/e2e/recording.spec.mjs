@@ -58,7 +58,7 @@ async function stepsAndPlays(stage) {
     window.steps = [];
     supple.model.on("frame", ({ text }) => steps.push(text.step));
   });
-  await page.getByRole("button", { name: "Loop" }).click();
+  await page.getByRole("button", { name: "Loop", exact: true }).click();
   await page.getByRole("button", { name: "Play" }).click();
   await until(page, () => steps.filter((step, i) => step < steps[i - 1]).length >= 2);
   assert.ok(await page.evaluate(() => supple.model.frame.text.playing));

@@ -1,14 +1,16 @@
 // End-to-end tests of the viewer: they start the program and click, drag and type in a page in Chromium.
 //
-// usage: node e2e/run.mjs PATH/TO/supple [WORDS OF A TEST'S NAME]
+// usage: node e2e/run.mjs [--firefox] PATH/TO/supple [WORDS OF A TEST'S NAME]
 //
-// Exits with 77, which CTest reports as skipped, when there is no Chromium.
+// With --firefox the tests of the main path run in Firefox, which has WebGL only with a screen: without one, a
+// virtual screen (Xvfb). Exits with 77, which CTest reports as skipped, when there is no browser or no screen.
+import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readdirSync } from "node:fs";
 import { cpus } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
-import { CHROMIUM_FLAGS, chromiumPath, COARSE, Stage } from "./harness.mjs";
+import { chromium, firefox } from "playwright-core";
+import { CHROMIUM_FLAGS, chromiumPath, COARSE, firefoxPath, Stage } from "./harness.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const results = join(here, "results");
@@ -16,22 +18,44 @@ const TEST_MILLISECONDS = 300_000;
 /** Browsers that run tests at the same time. */
 const BROWSERS = Math.min(2, cpus().length);
 
-const [program, ...words] = process.argv.slice(2);
+/** What most people do, for another browser. */
+const MAIN_PATH = [
+  "live: moves, pauses and steps", "live: a triangle is picked and read", "live: the contact table flies to contacts",
+  "live: pulling a vertex makes contacts", "live: wrong values are refused at the field", "live: plots follow",
+  "history: the past scrubs", "history: events are named by their pair", "history: a section loops",
+  "recording: steps, plays to the end and loops", "page: Space plays everywhere",
+  "page: views survive a reload", "spectators: a spectator sees the same and controls nothing",
+];
+
+const isFirefox = process.argv[2] === "--firefox";
+const [program, ...words] = process.argv.slice(isFirefox ? 3 : 2);
 if (!program || !existsSync(program)) {
-  console.error("usage: node e2e/run.mjs PATH/TO/supple [WORDS OF A TEST'S NAME]");
+  console.error("usage: node e2e/run.mjs [--firefox] PATH/TO/supple [WORDS OF A TEST'S NAME]");
   process.exit(2);
 }
-const executable = chromiumPath();
+const executable = isFirefox ? firefoxPath() : chromiumPath();
 if (!executable) {
-  console.log("skipped: there is no Chromium (apt-get install chromium, or set SUPPLE_CHROMIUM)");
+  console.log(isFirefox ? "skipped: there is no Firefox (apt-get install firefox-esr, or set SUPPLE_FIREFOX)" : "skipped: there is no Chromium (apt-get install chromium, or set SUPPLE_CHROMIUM)");
   process.exit(77);
 }
+if (isFirefox && !process.env.DISPLAY) {
+  const screen = spawnSync("xvfb-run", ["-a", "-s", "-screen 0 1600x1200x24", process.execPath, ...process.argv.slice(1)], { stdio: "inherit" });
+  if (screen.error) console.log("skipped: there is no screen (apt-get install xvfb xauth)");
+  process.exit(screen.error ? 77 : (screen.status ?? 1));
+}
+
+const launch = () =>
+  isFirefox
+    ? firefox.launch({ channel: "moz-firefox", executablePath: executable, headless: false })
+    : chromium.launch({ executablePath: executable, headless: true, args: CHROMIUM_FLAGS });
 
 async function loadTests() {
   const files = readdirSync(here).filter((name) => name.endsWith(".spec.mjs")).sort();
   const modules = await Promise.all(files.map((name) => import(pathToFileURL(join(here, name)).href)));
   const all = modules.flatMap((module, i) => module.tests.map(([name, body]) => ({ name: `${files[i].replace(".spec.mjs", "")}: ${name}`, body })));
-  return all.filter(({ name }) => words.every((word) => name.includes(word)));
+  const wanted = isFirefox && words.length === 0 ? all.filter(({ name }) => MAIN_PATH.includes(name)) : all;
+  if (wanted !== all && wanted.length < MAIN_PATH.length) throw new Error("a test of the main path is missing");
+  return wanted.filter(({ name }) => words.every((word) => name.includes(word)));
 }
 
 async function runTest({ name, body }, browser) {
@@ -61,7 +85,7 @@ async function runTest({ name, body }, browser) {
 
 /** Runs tests one after the other until none is left; returns how many failed. */
 async function runTests(waiting) {
-  const browser = await chromium.launch({ executablePath: executable, headless: true, args: CHROMIUM_FLAGS });
+  const browser = await launch();
   let failed = 0;
   try {
     for (let test; (test = waiting.shift()); ) if (!(await runTest(test, browser))) failed += 1;

@@ -17,18 +17,33 @@ double bytes_of(std::span<const Vec3d> positions) {
 
 void History::keep(const Source& source) {
   if (!(most_bytes_ > 0)) return;
-  const std::size_t count = spare_.size();
   const bool is_same_step = !steps_.empty() && steps_.back().number == source.step();
-  const auto has_moved = [&](std::size_t i) {
-    return versions_.empty() || versions_[i] != source.version(i);
-  };
   double needed = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (has_moved(i)) needed += bytes_of(source.positions(i));
+  for (std::size_t i = 0; i < spare_.size(); ++i) {
+    if (has_moved(source, i)) needed += bytes_of(source.positions(i));
   }
   if (is_same_step && needed == 0) return;
-  make_room(needed);
+  struct Guard {
+    History* history;
+    ~Guard() {
+      if (history != nullptr) history->clear();
+    }
+  } guard{this};
+  add(source, needed, is_same_step);
+  guard.history = nullptr;
+}
 
+void History::clear() {
+  steps_.clear();
+  spare_steps_.clear();
+  for (std::vector<Positions>& list : spare_) list.clear();
+  versions_.clear();
+  series_.values.clear();
+  bytes_ = 0;
+}
+
+void History::add(const Source& source, double needed, bool is_same_step) {
+  make_room(needed);
   Step step;
   if (is_same_step) {
     step = std::move(steps_.back());
@@ -38,9 +53,10 @@ void History::keep(const Source& source) {
     step = std::move(spare_steps_.back());
     spare_steps_.pop_back();
   }
+  const std::size_t count = spare_.size();
   step.objects.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!has_moved(i)) {
+    if (!has_moved(source, i)) {
       if (!is_same_step) step.objects[i] = steps_.back().objects[i];
       continue;
     }

@@ -18,7 +18,8 @@ class History final : public Frames {
   /// Keeps the last two steps also when they need more `bytes`. With 0 bytes it keeps nothing.
   History(double bytes, std::size_t object_count) : most_bytes_(bytes), spare_(object_count) {}
 
-  /// Keeps the present state. It replaces the last one when the step is the same.
+  /// Keeps the present state. It replaces the last one when the step is the same. When memory runs out, nothing
+  /// is kept any more.
   void keep(const Source& source);
 
   std::uint64_t count() const override { return steps_.size(); }
@@ -40,6 +41,11 @@ class History final : public Frames {
   };
 
   const Step& at(std::uint64_t frame) const { return steps_[static_cast<std::size_t>(frame)]; }
+  void clear();
+  void add(const Source& source, double needed, bool is_same_step);
+  bool has_moved(const Source& source, std::size_t object) const {
+    return versions_.empty() || versions_[object] != source.version(object);
+  }
   void make_room(double bytes);
   void drop_first();
   Positions copy(std::size_t object, std::span<const Vec3d> positions);

@@ -8,6 +8,8 @@ namespace {
 
 /// The events that are kept, of each kind, when there are very many in a step.
 constexpr std::size_t most_events = 400'000;
+/// Room for events from the start, so that most runs allocate it once.
+constexpr std::size_t first_events = 4'096;
 
 }  // namespace
 
@@ -17,6 +19,7 @@ void PairHistory::Side::add(std::uint64_t step, std::pair<std::uint32_t, std::ui
     events.erase(events.begin(), events.begin() + surplus);
     sent -= std::min(sent, surplus);
   }
+  if (events.empty()) events.reserve(first_events);
   events.push_back({static_cast<std::uint32_t>(step), pair.first, pair.second});
 }
 

@@ -125,7 +125,7 @@ Player::Outcome Player::advance_recording(RecordingSource& recording, double sec
 /// The last kept step is the present, except in a loop.
 Player::Outcome Player::advance_past(Stage& stage, double seconds) {
   RecordingSource* const past = stage.past();
-  const std::uint64_t last = stage.history().count() - 1;
+  const std::uint64_t last = std::max<std::uint64_t>(stage.history().count(), 1) - 1;
   const std::uint64_t frame = past != nullptr ? due_frame(*past, seconds) : target_.value_or(last);
   target_.reset();
   if (frame == last && !(loop_ && playing_)) {
