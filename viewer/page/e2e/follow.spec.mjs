@@ -174,7 +174,7 @@ async function objectsAreSorted(stage) {
   await isFirst(/^ball/);
   await page.getByRole("searchbox", { name: "Filter objects" }).fill("triangles>80");
   await isFirst(/^plate$/);
-  await until(page, () => document.querySelectorAll('[aria-label="Objects"] [role="listitem"], [aria-label="Objects"] li').length === 1);
+  assert.equal(await rows.count(), 1);
 }
 
 const palette = (page) => page.getByRole("dialog", { name: "Command palette" });
