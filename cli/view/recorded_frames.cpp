@@ -61,7 +61,8 @@ void RecordedFrames::read_series(Progress* progress) {
 std::vector<RecordedFrames::Object> RecordedFrames::objects_of(const Recording& recording) {
   std::vector<Object> objects;
   for (const RecordedObject& object : recording.header().objects)
-    objects.emplace_back(object.id, object.options.name, object.rest_positions.size(), object.triangles.size());
+    objects.emplace_back(object.id, object.options.name, object.rest_positions.size(),
+                         object.triangles.size());
   return objects;
 }
 

@@ -18,8 +18,8 @@ class History final : public Frames {
   /// Keeps the last two steps also when they need more `bytes`. With 0 bytes it keeps nothing.
   History(double bytes, std::size_t object_count) : most_bytes_(bytes), spare_(object_count) {}
 
-  /// Keeps the present state. It replaces the last one when the step is the same. When memory runs out, nothing
-  /// is kept any more.
+  /// Keeps the present state. It replaces the last one when the step is the same. When memory runs out,
+  /// nothing is kept any more.
   void keep(const Source& source);
 
   std::uint64_t count() const override { return steps_.size(); }
