@@ -192,7 +192,7 @@ async function everythingIsReachableInANarrowWindow(stage) {
 /** The page shows the frames of a recording as they are written. */
 async function followsARecording(stage) {
   const file = stage.file("run.h5");
-  const writer = spawn(stage.supple, ["simulate", join(scenes, "nine.toml"), "--steps", String(FOR_EVER), "--record", file, "--quiet"]);
+  const writer = spawn(stage.supple, ["simulate", join(scenes, "rabbit_pile.toml"), "--steps", String(FOR_EVER), "--record", file, "--quiet"]);
   stage.programs.push({ child: writer, stop: (signal) => writer.kill(signal) });
   let page;
   for (let tries = 0; !page; ++tries) {
@@ -202,16 +202,16 @@ async function followsARecording(stage) {
   const first = await page.evaluate(() => supple.model.frame.text.range[1]);
   await until(page, (first) => supple.model.frame.text.range[1] > first, first);
   await until(page, (first) => supple.model.frame.text.step > first, first);
+  writer.kill("SIGINT");
   assert.ok((await facts(page)).playing);
   const rows = await page.evaluate(() => [supple.model.history.frames.length, supple.model.frame.text.range[1] + 1]);
   assert.ok(rows[0] >= first + 1, `${rows} rows in the plots`);
-  await page.getByRole("button", { name: "First frame" }).click();
-  await isAt(page, 0).catch(() => {});  // it plays on
   await page.getByRole("button", { name: "Pause" }).click();
   await until(page, () => !supple.model.frame.text.playing);
+  await page.getByRole("button", { name: "First frame" }).click();
+  await isAt(page, 0);
   await page.getByRole("button", { name: "Last frame" }).click();
-  await until(page, () => supple.model.frame.text.step > 5);
-  writer.kill("SIGINT");
+  await until(page, (first) => supple.model.frame.text.step > first, first);
 }
 
 export const tests = [
