@@ -34,7 +34,7 @@ export function commandsOf(app: App): CommandGroup[] {
       { name: "Play or pause, wherever the focus is", keys: ["Space"], run: () => player.togglePlay() },
       { name: "One step forward", keys: ["ArrowRight"], run: forward },
       { name: "One step back", keys: ["ArrowLeft"], run: back },
-      { name: "First frame", keys: ["Home"], run: () => player.seek(0) },
+      { name: "First frame", keys: ["Home"], run: () => player.seek(-Infinity) },
       { name: "Last or newest frame", keys: ["End"], run: () => player.seek(Infinity) },
       { name: "Next event", keys: ["."], run: () => player.jump(1) },
       { name: "Previous event", keys: [","], run: () => player.jump(-1) },

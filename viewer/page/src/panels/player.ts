@@ -28,7 +28,7 @@ export class Player {
   private asked: number | null = null;
 
   constructor(private readonly model: Model, private readonly client: Client) {
-    const first = iconButton("back", "First frame", "Home", () => this.seek(0));
+    const first = iconButton("back", "First frame", "Home", () => this.seek(-Infinity));
     const last = iconButton("forward", "Last frame", "End", () => this.seek(Infinity));
     const previous = iconButton("previousEvent", "Previous event", ",", () => this.jump(-1));
     const next = iconButton("nextEvent", "Next event", ".", () => this.jump(1));
@@ -184,7 +184,7 @@ export class Player {
   seek(step: number): void {
     if (!this.canSeek) return;
     const [first, last] = this.model.range;
-    if (step > 0 && step < first) {
+    if (Number.isFinite(step) && step < first) {
       this.client.emit("notice", `Step ${readable(step)} is no longer kept. Steps ${readable(first)} to ${readable(last)} are.`);
       return;
     }
