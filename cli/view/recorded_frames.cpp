@@ -84,7 +84,7 @@ bool RecordedFrames::refresh() {
   }
   if (recording_->frame_count() < count_ || objects_of(*recording_) != objects_) {
     is_growing_ = false;
-    throw Error(path_ + ": has been recorded anew; open it again");
+    throw Error(path_ + ": was recorded again; open it again");
   }
   const std::uint64_t before = count_;
   read_series(nullptr);

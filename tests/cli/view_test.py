@@ -259,7 +259,7 @@ class Serve(ViewTest):
             told = page.receive_text(FRAME)
         self.write("scene.toml", BODY + '[[object]]\nmodel = "box"\ntranslate = [0.9, 0, 0]\n')
         self.assertEqual(self.run_here("simulate", "scene.toml", "--frames", 9, "--record", "run.h5", "--quiet").status, 0)
-        self.assertIn("recorded anew", page.receive_text(FAILURE)["message"])
+        self.assertIn("recorded again", page.receive_text(FAILURE)["message"])
         self.write("a.obj", TRIANGLE)
         self.assert_one_line_error(self.run_here("view", "a.obj", "--follow"), "--follow", "not a recording")
 

@@ -45,7 +45,7 @@ class Page : public std::enable_shared_from_this<Page> {
     std::function<void()> came, left, sent;
     /// Returns whether to continue reading now.
     std::function<bool(std::string)> command;
-    /// Of a binary message; empty when the page may not send any.
+    /// Takes a binary message. Empty: the page may send none.
     std::function<void(std::span<const std::byte>)> result{};
   };
 

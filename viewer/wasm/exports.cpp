@@ -51,7 +51,7 @@ std::byte* session_memory(std::size_t length) {
 SUPPLE_EXPORT(session_open) void session_open(const std::byte* show, std::size_t length);
 void session_open(const std::byte* show, std::size_t length) {
   // While `set` builds the new objects, the old ones still exist. All must fit into the 4 GB of a module.
-  session.emplace(supple::viewer::unpack({show, length}), supple::viewer::MemoryBudget{1e9});
+  session.emplace(supple::viewer::unpack({show, length}), supple::viewer::MemoryBudget{1e9, 1e8});
   given = {};
   session->greet();
 }

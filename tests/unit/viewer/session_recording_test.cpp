@@ -363,7 +363,7 @@ TEST(ViewerRecording, GrowsAndFollows) {
   page.ask({{"do", "seek"}, {"frame", 24}});
   page.session.advance(0);
   EXPECT_EQ(page.frame().json["step"], 24);
-  frames->problem = "run.h5: has been recorded anew; open it again";
+  frames->problem = "run.h5: was recorded again; open it again";
   page.session.advance(0.01);
   EXPECT_EQ(page.only(ViewerMessage::failure).json["message"], frames->problem);
   EXPECT_EQ(page.frame().json["step"], 24);
