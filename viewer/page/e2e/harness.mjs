@@ -168,7 +168,8 @@ export async function pause(page) {
 }
 
 /**
- * Waits until the page has drawn a frame that includes the effects of all commands so far, and draws no more.
+ * Waits until the page has drawn a frame that includes the effects of all commands so far, and draws no more; then
+ * its panels show that frame.
  * A command without effect makes the session send such a frame.
  */
 export async function settled(page) {
@@ -184,6 +185,7 @@ export async function settled(page) {
       last = drawnLast();
       await turns(2);
     }
+    supple.tick();
   });
 }
 

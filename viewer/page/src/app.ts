@@ -448,6 +448,7 @@ export class App {
         drawn: () => view.statistics(),
         get isUpToDate() { return view.isUpToDate; },
         draw: () => view.draw(),
+        tick: () => this.tick(),
         /** Acts as if a frame had brought new positions of all objects. */
         touch: () => view.touch(),
         loseContext: () => (view.canvas.getContext("webgl2") as WebGL2RenderingContext).getExtension("WEBGL_lose_context")?.loseContext(),

@@ -93,7 +93,7 @@ export class ScenePanel {
 
   private build(): void {
     this.deepest = -1;
-    this.fitLevels(0);
+    this.fitLevels(Math.max(0, this.model.octree.level));
     this.seen = new Set();
     this.sortRows();
   }
@@ -146,24 +146,22 @@ export class ScenePanel {
     );
   }
 
-  /** Offers levels up to the deepest level seen so far. */
+  /** Offers levels up to the deepest level seen so far and the chosen one, which a view file may set before any frame. */
   private fitLevels(deepest: number): void {
     if (deepest <= this.deepest) return;
     this.deepest = deepest;
-    const chosen = String(this.model.octree.level);
     const options = [h("option", { value: -1 }, "leaves")];
     for (let level = 0; level <= deepest; ++level) options.push(h("option", { value: level }, String(level)));
     this.levels.replaceChildren(...options);
-    this.levels.value = chosen;
-    if (this.levels.selectedIndex < 0) this.levels.value = "-1";
+    this.levels.value = String(this.model.octree.level);
   }
 
   private refresh(): void {
     const { layers, octree } = this.model;
     for (const [layer, box] of this.boxes) box.checked = layers[layer];
     this.only.checked = octree.onlySelected;
+    this.fitLevels(octree.level);
     this.levels.value = String(octree.level);
-    if (this.levels.selectedIndex < 0) this.levels.value = "-1";
     this.legend.hidden = !layers.octree && !layers.regions && !layers.nodes;
   }
 
