@@ -13,31 +13,48 @@ async function open(stage, scene) {
   return page;
 }
 
-/** Draws after all vertices changed. Prints the time until the script ends and until the pixels are drawn. */
+/**
+ * Prints how long a picture takes until the script ends and until its pixels are drawn, after all vertices have
+ * changed and after only the camera has moved, and how long it takes to find the triangle at the pointer.
+ */
 async function picture(stage, scene) {
+  const begin = performance.now();
   const page = await open(stage, scene);
+  const first = performance.now() - begin;
   await pause(page);
   await until(page, () => supple.model.frame.contacts.length === 0);
-  const { script, pixels, objects, triangles, calls } = await page.evaluate(() => {
+  const { moved, turned, picked, objects, triangles, calls } = await page.evaluate(() => {
     const gl = document.querySelector("canvas.view").getContext("webgl2");
     const pixel = new Uint8Array(4);
-    const times = [];
-    for (let i = 0; i < 30; ++i) {
+    const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
+    const timed = (work) => {
       const begin = performance.now();
-      supple.touch();
-      supple.draw();
-      const drawn = performance.now();
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-      times.push([drawn - begin, performance.now() - begin]);
-    }
-    const median = (at) => times.map((pair) => pair[at]).sort((a, b) => a - b)[15];
+      work();
+      return performance.now() - begin;
+    };
+    /** Milliseconds of script, and with its pixels. */
+    const drawn = (change) => {
+      const times = Array.from({ length: 30 }, () => {
+        const script = timed(() => {
+          change();
+          supple.draw();
+        });
+        return [script, script + timed(() => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel))];
+      });
+      return [0, 1].map((at) => median(times.map((pair) => pair[at])));
+    };
+    const moved = drawn(() => supple.touch());
+    const { calls } = supple.drawn();
+    const turned = drawn(() => {});
+    const { x, y } = supple.project(supple.centroid(0, 0));
+    const picked = median(Array.from({ length: 30 }, () => timed(() => supple.pickAt(x, y))));
     const { objects } = supple.model;
-    const triangles = objects.reduce((sum, object) => sum + object.triangles, 0);
-    return { script: median(0), pixels: median(1), objects: objects.length, triangles, calls: supple.drawn().calls };
+    return { moved, turned, picked, calls, objects: objects.length, triangles: objects.reduce((sum, object) => sum + object.triangles, 0) };
   });
+  const shown = ([script, pixels]) => `${script.toFixed(2)} ms of script, ${pixels.toFixed(1)} ms with its pixels`;
   console.log(
-    `${triangles.toLocaleString("en")} triangles, objects: ${objects.toLocaleString("en")}; ${script.toFixed(2)} ms of script per picture in ${calls} draw calls, ` +
-      `${pixels.toFixed(1)} ms with its pixels`,
+    `${triangles.toLocaleString("en")} triangles, objects: ${objects.toLocaleString("en")}; first frame after ${(first / 1000).toFixed(1)} s; ` +
+      `all vertices new: ${shown(moved)}, ${calls} draw calls; camera moved: ${shown(turned)}; triangle at the pointer: ${picked.toFixed(1)} ms`,
   );
 }
 
@@ -48,7 +65,7 @@ if (!program || !existsSync(program)) {
 }
 const browser = await chromium.launch({ executablePath: chromiumPath(), headless: true, args: CHROMIUM_FLAGS });
 try {
-  for (const scene of [swayingBalls(1, 22), swayingBalls(1, 71), SWAYING_CROWD]) {
+  for (const scene of [swayingBalls(1, 22), swayingBalls(1, 71), SWAYING_CROWD, swayingBalls(1, 224)]) {
     const stage = new Stage(resolve(program), browser);
     try {
       await picture(stage, scene);
