@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { unzipSync } from "fflate";
-import { hasFrame, pageWithMessages, pause, runProgram, scenes, settled, step, textMessage, TWO_BALLS, until } from "./harness.mjs";
+import { hasFrame, pageWithMessages, pause, runProgram, scenes, settled, step, textMessage, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 const dialogOf = (page) => page.getByRole("dialog", { name: "Save frames as pictures" });

@@ -1,7 +1,7 @@
 // Looking inside: a slice with caps, one object alone, another point to turn around, values below the pointer, several views.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { camera, coloursAt, hasFrame, pause, picture, scenes, seenTriangle, settled, TWO_BALLS, until } from "./harness.mjs";
+import { camera, coloursAt, hasFrame, pause, picture, scenes, seenTriangle, settled, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const ball = (name, x, more = "") => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 12\ntranslate = [${x}, 0, 0]\n${more}\n`;
 const [CUT, OVERLAP] = [[0x8d, 0x96, 0xa3], [0xc1, 0x12, 0x1f]];
