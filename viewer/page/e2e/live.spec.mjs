@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { camera, hasFrame, pause, picture, scenes, settled, step, until } from "./tools/harness.mjs";
+import { camera, goesOn, hasFrame, pause, picture, scenes, settled, step, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 
@@ -16,7 +16,7 @@ async function movesPausesAndSteps(stage) {
   await page.getByRole("button", { name: "Pause" }).click();
   await until(page, () => !supple.model.frame.text.playing);
   const paused = await step(page);
-  await page.waitForTimeout(400);
+  await goesOn(page);
   await settled(page);
   assert.equal(await step(page), paused);
   await page.getByRole("button", { name: "+1 step" }).click();
@@ -274,7 +274,7 @@ async function watches(stage) {
   await page.getByRole("button", { name: "Reset" }).click();
   await until(late, () => supple.model.scene.run === 2 && supple.model.frame);
   await page.close();
-  await late.waitForTimeout(300);
+  await goesOn(late);
   assert.equal(await late.evaluate(() => supple.client.status.state), "connected");
   await program.stop();
   await until(late, () => supple.client.status.state === "ended");

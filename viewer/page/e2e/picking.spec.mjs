@@ -1,7 +1,7 @@
 // What a click in the view or in a table selects, explains and pulls.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { camera, counts, pause, scenes, seenTriangle, settled, TWO_BALLS, until } from "./tools/harness.mjs";
+import { camera, counts, groundPlace, pause, scenes, seenTriangle, settled, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 
@@ -18,7 +18,8 @@ async function picksATriangle(stage) {
   const shown = await page.evaluate(([object, vertex]) => supple.positionOf(object, vertex), [1, vertex]);
   const center = await page.evaluate(() => supple.model.scene.center);
   exact.split("\n").map(Number).forEach((x, i) => assert.ok(Math.abs(x - shown[i] - center[i]) < 1e-6, `${exact} is not ${shown}`));
-  await page.mouse.click(seen.x, 120);  // the ground
+  const ground = await groundPlace(page);
+  await page.mouse.click(ground.x, ground.y);
   await until(page, () => supple.model.selection === null);
 }
 

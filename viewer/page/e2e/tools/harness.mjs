@@ -191,6 +191,19 @@ export async function settled(page) {
   });
 }
 
+/** For what must not happen: the page goes on for half a second or longer, as many frames as it takes. */
+export const goesOn = (page) =>
+  page.evaluate(async () => {
+    for (let i = 0; i < 30; ++i) await new Promise((done) => requestAnimationFrame(done));
+  });
+
+/** A place of the window where the view shows the ground. */
+export const groundPlace = (page) =>
+  page.evaluate(() => {
+    const { left, top } = document.querySelector("canvas.view").getBoundingClientRect();
+    return { x: left + 12, y: top + 12 };
+  });
+
 /** The content of the canvas, as a text to compare. */
 export const picture = (page) =>
   page.evaluate(() => {
