@@ -16,7 +16,7 @@ async function cameraMoves(stage) {
   const first = await camera(page);
   await page.mouse.move(x, y);
   await page.mouse.down();
-  await page.mouse.move(x + 120, y + 40, { steps: 5 });
+  await page.mouse.move(x + 60, y + 40, { steps: 5 });
   await page.mouse.up();
   const orbited = await camera(page);
   assert.notDeepEqual(orbited.position, first.position);

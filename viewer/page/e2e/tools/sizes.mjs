@@ -51,18 +51,28 @@ async function turnTo(page, name) {
 
 const isSeen = (locator) => original.isVisible.call(locator.first());
 
+/** The closed drawer that has the element. Both are laid out for that, unseen, so that nothing changes for the page. */
+async function drawerOf(locator) {
+  const layOut = (isOn) =>
+    locator.page().evaluate(async (isOn) => {
+      for (const panel of document.querySelectorAll(".panel"))
+        for (const [name, value] of [["display", "flex"], ["opacity", "0"], ["pointer-events", "none"]])
+          isOn ? panel.style.setProperty(name, value, "important") : panel.style.removeProperty(name);
+      for (let i = 0; isOn && i < 2; ++i) await new Promise((done) => requestAnimationFrame(done));  // lists fill their rows
+    }, isOn);
+  await layOut(true);
+  const panel = await original.evaluateAll.call(locator, (found) => found.find((element) => element.checkVisibility())?.closest(".panel")?.id);
+  await layOut(false);
+  return panel?.replace("panel-", "");
+}
+
 /** Looks for an element in the page and in its drawers. Returns whether it is visible now. */
 async function lookFor(locator) {
-  const page = locator.page();
   if (await isSeen(locator)) return true;
-  const before = await openDrawer(page);
-  if (before === null) return false;
-  for (const name of ["scene", "details"]) {
-    await turnTo(page, name);
-    if (await isSeen(locator)) return true;
-  }
-  await turnTo(page, before);
-  return false;
+  if ((await openDrawer(locator.page())) === null) return false;
+  const name = await drawerOf(locator);
+  if (name) await turnTo(locator.page(), name);
+  return isSeen(locator);
 }
 
 /** Looks until the element is visible, or at least exists when `isRead`. */
@@ -145,7 +155,11 @@ function wrapPointer(replace, mice, keyboards) {
     }
   });
   replace(mice, "down", async function (down, state, page, options) {
-    if (!state.hasTouch || options?.button) return down(options);
+    if (!state.hasTouch) return down(options);
+    if (options?.button) {
+      await this.move(...state.at);  // the pointer stayed where the finger began
+      return down(options);
+    }
     state.finger = await page.context().newCDPSession(page);
     return touch(state, "touchStart");
   });
