@@ -2,7 +2,6 @@
 
 import base64
 import gzip
-import ipaddress
 import json
 import os
 import pathlib
@@ -297,8 +296,14 @@ class Serve(ViewTest):
     def test_other_interfaces_only_with_a_warning(self):
         self.write("a.obj", TRIANGLE)
         process, url = self.start("a.obj", "--host", "0.0.0.0")
-        # The address of this machine in its network; without a network, the loopback address.
-        self.assertNotEqual(ipaddress.ip_address(urllib.parse.urlsplit(url).hostname), ipaddress.ip_address("0.0.0.0"))
+        # The address of this machine in its network, which other machines reach; without a network, the loopback address.
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.connect(("192.0.2.1", 9))  # sends nothing
+                expected = probe.getsockname()[0]
+            except OSError:
+                expected = "127.0.0.1"
+        self.assertEqual(urllib.parse.urlsplit(url).hostname, expected)
         self.assertEqual(urllib.request.urlopen(url).status, 200)
         process.send_signal(signal.SIGINT)
         _, error = process.communicate()

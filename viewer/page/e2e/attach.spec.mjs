@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { dirname, join } from "node:path";
-import { camera, hasFrame, step, textMessage, until } from "./harness.mjs";
+import { camera, hasFrame, step, textMessage, until } from "./tools/harness.mjs";
 
 const FOR_EVER = 1_000_000_000;
 

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { unzipSync } from "fflate";
-import { hasFrame, pageWithMessages, pause, runProgram, scenes, settled, step, textMessage, TWO_BALLS, until } from "./harness.mjs";
+import { goesOn, hasFrame, pageWithMessages, pause, runProgram, scenes, settled, step, textMessage, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 const dialogOf = (page) => page.getByRole("dialog", { name: "Save frames as pictures" });
@@ -200,7 +200,7 @@ async function cancelKeepsWhatIsThere(stage) {
   const after = await bufferSize(page);
   assert.ok(after.width < before.width && after.height < before.height, "the view is not as large as the new window");
   const now = await step(page);
-  await page.waitForTimeout(400);
+  await goesOn(page);
   assert.equal(await step(page), now, "it goes on");
 }
 

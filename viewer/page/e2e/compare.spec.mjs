@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { picture, runProgram, scenes, settled, step, until } from "./harness.mjs";
+import { picture, runProgram, scenes, settled, step, until } from "./tools/harness.mjs";
 
 /** In the second recording the first object waves otherwise. */
 async function open(stage, seed) {

@@ -1,6 +1,6 @@
 // Fields: numbers and vectors as colours and arrows, with a colour bar.
 import assert from "node:assert/strict";
-import { coloursAt, counts, pause, picture, seenTriangle, settled, until } from "./harness.mjs";
+import { coloursAt, counts, pause, picture, seenTriangle, settled, until } from "./tools/harness.mjs";
 
 /** A cube that moves 5 in a second, and a ball at rest. */
 const MOVING_CUBE = `

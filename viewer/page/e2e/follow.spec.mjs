@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { hasFrame, pause, runProgram, scenes, seenTriangle, settled, SWAYING_CROWD, until } from "./harness.mjs";
+import { hasFrame, pause, runProgram, scenes, seenTriangle, settled, SWAYING_CROWD, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 const pins = (page) => page.getByRole("grid", { name: "Pins" });
@@ -49,9 +49,8 @@ async function pinsFollowEachStep(stage) {
     assert.ok(list.length > 20 && list.every((step, i) => i === 0 || step === list[i - 1] + 1), `steps are missing: ${list}`);
   }
   assert.equal(present, expected);
-  const shown = await pins(page).locator('[aria-rowindex="1"] [role=gridcell]').nth(1).textContent();
-  await until(page, ([text]) => document.querySelector('.pins [aria-rowindex="1"] > :nth-child(2)').textContent === text, [expected >= 1000 ? expected.toLocaleString("en") : String(expected)]);
-  assert.ok(shown !== "");
+  const count = expected >= 1000 ? expected.toLocaleString("en") : String(expected);
+  await pins(page).locator('[aria-rowindex="1"] > :nth-child(2)', { hasText: new RegExp(`^${count}$`) }).waitFor();
   for (const figure of ["contacts", "length", "normal"]) {
     await pins(page).locator('[aria-rowindex="1"]').click();
     await page.locator(".pin-detail").getByRole("figure", { name: figure }).waitFor();

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { join } from "node:path";
-import { pause, scenes, settled, step, until } from "./harness.mjs";
+import { pause, scenes, settled, step, until } from "./tools/harness.mjs";
 
 const FOR_EVER = 1_000_000;
 

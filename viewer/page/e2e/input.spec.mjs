@@ -1,6 +1,6 @@
 // Meshes that are unusual: numbers that are not finite, no faces, rods and particles.
 import assert from "node:assert/strict";
-import { picture, runProgram, settled, until } from "./harness.mjs";
+import { picture, runProgram, settled, until } from "./tools/harness.mjs";
 
 const MESH = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n";
 /** A rod of two edges and a particle, 0.01 above the mesh. */

@@ -1,7 +1,7 @@
 // Looking inside: a slice with caps, one object alone, another point to turn around, values below the pointer, several views.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { camera, coloursAt, hasFrame, pause, picture, scenes, seenTriangle, settled, TWO_BALLS, until } from "./harness.mjs";
+import { camera, coloursAt, goesOn, groundPlace, hasFrame, pause, picture, scenes, seenTriangle, settled, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const ball = (name, x, more = "") => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 12\ntranslate = [${x}, 0, 0]\n${more}\n`;
 const [CUT, OVERLAP] = [[0x8d, 0x96, 0xa3], [0xc1, 0x12, 0x1f]];
@@ -99,12 +99,13 @@ async function surfaceShowsItsValues(stage) {
   (await row(page, "at")).split(", ").map(Number).forEach((x, i) => assert.ok(Math.abs(x - middle[i]) < 0.01, `${x} is not ${middle[i]}`));
   const box = await tooltip(page).boundingBox();
   assert.ok(box.x > seen.x && box.y > seen.y, "it covers what it describes");
-  await page.mouse.move(seen.x, 120);  // the ground
+  const ground = await groundPlace(page);
+  await page.mouse.move(ground.x, ground.y);
   await tooltip(page).waitFor({ state: "hidden" });
 
   await page.getByRole("checkbox", { name: "Values at pointer" }).uncheck();
   await page.mouse.move(seen.x, seen.y);
-  await page.waitForTimeout(400);
+  await goesOn(page);
   assert.equal(await tooltip(page).isVisible(), false);
 }
 
@@ -117,7 +118,8 @@ async function marksShowTheirValues(stage) {
   await settled(page);
   const rests = async (kind, list, offset) => {
     const at = await page.evaluate(([list, offset]) => supple.project([...supple.model.frame[list].subarray(offset, offset + 3)]), [list, offset]);
-    await page.mouse.move(at.x - 60, 130);
+    const ground = await groundPlace(page);
+    await page.mouse.move(ground.x, ground.y);
     await page.mouse.move(at.x, at.y);
     await until(page, (kind) => document.querySelector(".hover:not([hidden])")?.textContent.includes(kind), kind);
   };
@@ -153,7 +155,7 @@ async function longPressShowsValues(stage) {
   await touch("touchStart", [{ x, y }]);
   await tooltip(page).getByText("right", { exact: true }).waitFor();
   await touch("touchEnd", []);
-  await page.waitForTimeout(300);
+  await goesOn(page);
   assert.ok(await tooltip(page).isVisible());
   const box = await tooltip(page).boundingBox();
   assert.ok(box.x >= 0 && box.x + box.width <= 390, "it leaves the window");

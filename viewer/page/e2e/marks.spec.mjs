@@ -1,7 +1,7 @@
 // What touches what, at a glance: marks with a size in pixels, and the first line of the side bar.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { pause, picture, scenes, settled, until } from "./harness.mjs";
+import { pause, picture, scenes, settled, until } from "./tools/harness.mjs";
 
 const ball = (name, x, more = "") => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, 0, 0]\n${more}\n`;
 const touchLine = (page) => page.getByRole("status", { name: "What touches" });

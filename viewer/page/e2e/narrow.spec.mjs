@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
-import { pause, scenes, settled, until } from "./harness.mjs";
+import { pause, scenes, settled, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");

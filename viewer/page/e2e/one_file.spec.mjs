@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { hasFrame, pause, runProgram, scenes, seenTriangle, settled, step, TWO_BALLS, until } from "./harness.mjs";
+import { hasFrame, pause, runProgram, scenes, seenTriangle, settled, step, TWO_BALLS, until } from "./tools/harness.mjs";
 
 /** Exports a page and opens it. Any other request fails the test. */
 async function open(stage, ...input) {

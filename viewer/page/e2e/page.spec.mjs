@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { chmodSync, existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { camera, hasFrame, pageWithMessages, pause, picture, scenes, settled, step, textMessage, TWO_BALLS, until } from "./harness.mjs";
+import { camera, hasFrame, pageWithMessages, pause, picture, scenes, settled, step, textMessage, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 const balls = (stage) => stage.file("balls.toml", TWO_BALLS);
@@ -16,7 +16,7 @@ async function cameraMoves(stage) {
   const first = await camera(page);
   await page.mouse.move(x, y);
   await page.mouse.down();
-  await page.mouse.move(x + 120, y + 40, { steps: 5 });
+  await page.mouse.move(x + 60, y + 40, { steps: 5 });
   await page.mouse.up();
   const orbited = await camera(page);
   assert.notDeepEqual(orbited.position, first.position);
@@ -100,9 +100,10 @@ async function keyboardAlone(stage) {
   await key("Escape");
   await until(page, () => !document.querySelector("dialog").open);
 
-  const tabTo = async (wanted) => {
+  // Backwards to what is above: Tab on the last element leaves the page for the bars of the browser.
+  const tabTo = async (wanted, by = "Tab") => {
     for (let i = 0; i < 200; ++i) {
-      await key("Tab");
+      await key(by);
       const focus = await page.evaluate(() => {
         const at = document.activeElement;
         return { name: at.getAttribute("aria-label") ?? at.textContent, outline: getComputedStyle(at).outlineStyle };
@@ -113,6 +114,18 @@ async function keyboardAlone(stage) {
     }
     assert.fail(`Tab never comes to ${wanted}`);
   };
+  const hasDrawers = await page.evaluate(() => document.querySelector("button.drawer").checkVisibility());
+  const opens = async (name, by) => {
+    if (!hasDrawers) return;
+    await tabTo(new RegExp(`^${name}$`), by);
+    await key("Enter");
+  };
+  const closes = async (name) => {
+    if (!hasDrawers) return;
+    await tabTo(new RegExp(`^Close ${name}$`), "Shift+Tab");
+    await key("Enter");
+  };
+  await opens("Details");
   await tabTo(/^Contacts$/);
   await key("ArrowLeft");
   await key("ArrowRight");
@@ -123,11 +136,14 @@ async function keyboardAlone(stage) {
   await until(page, () => supple.model.contact !== null);
 
   // Pull a vertex: select an object, grab its first vertex, move it, release it.
-  await tabTo(/^fish 1/);
+  await closes("Details");
+  await opens("Scene", "Shift+Tab");
+  await tabTo(/^fish 1/, hasDrawers ? "Tab" : "Shift+Tab");
   await key("Enter");
   const object = await page.evaluate(() => supple.model.selection.object);
+  await closes("Scene");
   await key("g");
-  await tabTo(/^3D view$/);
+  await tabTo(/^3D view$/, "Shift+Tab");
   const held = await page.evaluate((object) => supple.positionOf(object, 0), object);
   await key("Enter");
   for (let i = 0; i < 5; ++i) await key("ArrowUp");
@@ -163,6 +179,35 @@ async function everythingHasAName(stage) {
     );
     assert.deepEqual(nameless, []);
   }
+}
+
+/** Also what a button shows after it was pressed. */
+async function noTwoIconsAreAlike(stage) {
+  const { page } = await stage.view(nine);
+  await pause(page);
+  const drawn = new Map();
+  const look = async () => {
+    const icons = await page.evaluate(async () => {
+      const pixels = async (svg) => {
+        const image = Object.assign(new Image(), { src: `data:image/svg+xml,${encodeURIComponent(svg.outerHTML.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"'))}` });
+        await image.decode();
+        const context = new OffscreenCanvas(32, 32).getContext("2d");
+        context.drawImage(image, 0, 0, 32, 32);
+        return [...context.getImageData(0, 0, 32, 32).data].filter((_, i) => i % 4 === 3);
+      };
+      return Promise.all([...document.querySelectorAll("button:has(svg)")].map(async (button) => [button.getAttribute("aria-label"), await pixels(button.querySelector("svg"))]));
+    });
+    for (const [name, pixels] of icons) drawn.set(name, pixels);
+  };
+  await look();
+  assert.ok(drawn.size > 15, `${drawn.size} buttons have icons`);
+  await page.getByRole("button", { name: "Orthographic" }).click();
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await page.getByRole("button", { name: "Pause" }).waitFor();
+  await look();
+  const ink = (pixels) => pixels.reduce((sum, alpha) => sum + alpha, 0);
+  const pairs = [...drawn].flatMap(([a, one], i) => [...drawn].slice(i + 1).map(([b, other]) => ({ names: `${a} and ${b}`, apart: one.reduce((sum, alpha, k) => sum + Math.abs(alpha - other[k]), 0) / Math.max(ink(one), ink(other)) })));
+  for (const { names, apart } of pairs) assert.ok(apart > 0.4, `the icons of ${names} differ in ${Math.round(100 * apart)} % of their ink`);
 }
 
 const says = (page, title) => page.getByRole("alertdialog", { name: title }).waitFor();
@@ -405,6 +450,7 @@ export const tests = [
   ["keyboard alone", keyboardAlone],
   ["light and dark", lightAndDark],
   ["everything has a name", everythingHasAName],
+  ["no two icons are alike", noTwoIconsAreAlike],
   ["views survive a reload", viewsSurviveAReload],
   ["Space plays everywhere", spacePlaysEverywhere],
   ["a killed program", killedProgram],

@@ -1,7 +1,7 @@
 // A recording: play, seek, step, loop, jump between events.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { runProgram, scenes, settled, step, until } from "./harness.mjs";
+import { runProgram, scenes, settled, step, until } from "./tools/harness.mjs";
 
 const FRAMES = 60;
 

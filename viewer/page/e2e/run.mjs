@@ -1,16 +1,19 @@
 // End-to-end tests of the viewer: they start the program and click, drag and type in a page in Chromium.
 //
-// usage: node e2e/run.mjs [--firefox] PATH/TO/supple [WORDS OF A TEST'S NAME]
+// usage: node e2e/run.mjs [--firefox] [--size 1440|800|390] [--theme dark|light] PATH/TO/supple [WORDS OF A TEST'S NAME]
 //
-// With --firefox the tests of the main path run in Firefox, which has WebGL only with a screen: without one, a
-// virtual screen (Xvfb). Exits with 77, which CTest reports as skipped, when there is no browser or no screen.
+// Without --size and --theme each test has a size and a theme that follow from its name. With --firefox the tests
+// of the main path run in Firefox, which has WebGL only with a screen: without one, a virtual screen (Xvfb).
+// Exits with 77, which CTest reports as skipped, when there is no browser or no screen.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readdirSync } from "node:fs";
 import { cpus } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
+import { parseArgs } from "node:util";
 import { chromium, firefox } from "playwright-core";
-import { CHROMIUM_FLAGS, chromiumPath, COARSE, firefoxPath, Stage } from "./harness.mjs";
+import { CHROMIUM_FLAGS, chromiumPath, COARSE, firefoxPath, Stage } from "./tools/harness.mjs";
+import { SIZES, THEMES, windowOf } from "./tools/sizes.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const results = join(here, "results");
@@ -20,19 +23,34 @@ const BROWSERS = Math.min(2, cpus().length);
 
 /** What most people do, for another browser. */
 const MAIN_PATH = [
-  "live: moves, pauses and steps", "live: a triangle is picked and read", "live: the contact table flies to contacts",
-  "live: pulling a vertex makes contacts", "live: wrong values are refused at the field", "live: plots follow",
+  "live: moves, pauses and steps", "picking: a triangle is picked and read", "picking: the contact table flies to contacts",
+  "picking: pulling a vertex makes contacts", "live: wrong values are refused at the field", "live: plots follow",
   "history: the past scrubs", "history: events are named by their pair", "history: a section loops",
-  "recording: steps, plays to the end and loops", "page: Space plays everywhere",
-  "page: views survive a reload", "spectators: a spectator sees the same and controls nothing",
+  "recording: steps, plays to the end and loops", "page: keyboard alone", "page: Space plays everywhere",
+  "page: views survive a reload", "live: a spectator sees the same and controls nothing",
 ];
 
-const isFirefox = process.argv[2] === "--firefox";
-const [program, ...words] = process.argv.slice(isFirefox ? 3 : 2);
-if (!program || !existsSync(program)) {
-  console.error("usage: node e2e/run.mjs [--firefox] PATH/TO/supple [WORDS OF A TEST'S NAME]");
+const USAGE = "usage: node e2e/run.mjs [--firefox] [--size 1440|800|390] [--theme dark|light] PATH/TO/supple [WORDS OF A TEST'S NAME]";
+
+/** The options and arguments; undefined when one is wrong. */
+function readArguments() {
+  try {
+    const { values, positionals } = parseArgs({ allowPositionals: true, options: { firefox: { type: "boolean" }, size: { type: "string" }, theme: { type: "string" } } });
+    const isKnown = (value, known) => value === undefined || known.includes(value);
+    const [program] = positionals;
+    if (isKnown(values.size, Object.keys(SIZES)) && isKnown(values.theme, THEMES) && program && existsSync(program)) return { ...values, positionals };
+  } catch (error) {
+    console.error(error.message);
+  }
+}
+
+const chosen = readArguments();
+if (!chosen) {
+  console.error(USAGE);
   process.exit(2);
 }
+const [program, ...words] = chosen.positionals;
+const isFirefox = chosen.firefox ?? false;
 const executable = isFirefox ? firefoxPath() : chromiumPath();
 if (!executable) {
   console.log(isFirefox ? "skipped: there is no Firefox (apt-get install firefox-esr, or set SUPPLE_FIREFOX)" : "skipped: there is no Chromium (apt-get install chromium, or set SUPPLE_CHROMIUM)");
@@ -59,23 +77,24 @@ async function loadTests() {
 }
 
 async function runTest({ name, body }, browser) {
-  const stage = new Stage(resolve(program), browser, COARSE);
+  const { size, theme } = { ...windowOf(name), ...chosen };
+  const stage = new Stage(resolve(program), browser, COARSE, { size, theme });
   let timer;
   const tooLong = new Promise((_, fail) => (timer = setTimeout(() => fail(new Error("it takes too long")), TEST_MILLISECONDS)));
   const begin = Date.now();
   try {
     await Promise.race([body(stage), tooLong]);
     for (const page of stage.contexts.flatMap((context) => context.pages()))
-      if (await page.locator('[aria-label="The page has failed"]').count()) throw new Error("the page says that it has failed");
+      if (await page.evaluate(() => document.querySelector('[aria-label="The page has failed"]') !== null)) throw new Error("the page says that it has failed");
     if (stage.errors.length > 0) throw new Error(`the page has errors: ${stage.errors.join("; ")}`);
-    console.log(`ok    ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
+    console.log(`ok    ${name} (${size} ${theme}, ${((Date.now() - begin) / 1000).toFixed(1)} s)`);
     return true;
   } catch (error) {
-    console.log(`FAIL  ${name}\n      ${String(error?.stack ?? error).split("\n").slice(0, 8).join("\n      ")}`);
+    console.log(`FAIL  ${name} (${size} ${theme})\n      ${String(error?.stack ?? error).split("\n").slice(0, 8).join("\n      ")}`);
     for (const other of stage.errors) console.log(`      in the page: ${other}`);
     mkdirSync(results, { recursive: true });
     const page = stage.contexts.at(-1)?.pages().at(-1);
-    await page?.screenshot({ path: join(results, `${name.replace(/[^a-z0-9]+/gi, "-")}.png`), timeout: 5000 }).catch(() => {});
+    await page?.screenshot({ path: join(results, `${name.replace(/[^a-z0-9]+/gi, "-")}-${size}-${theme}.png`), timeout: 5000 }).catch(() => {});
     return false;
   } finally {
     clearTimeout(timer);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { camera, hasFrame, pause, picture, runProgram, scenes, settled, step, TWO_BALLS, until } from "./harness.mjs";
+import { camera, hasFrame, pause, picture, runProgram, scenes, settled, step, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 

@@ -1,7 +1,7 @@
 // The world around the objects: floor, shadow, border, axes; shading, x-ray and the upward axis.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { camera, coloursAt, hasFrame, pause, picture, scenes, settled, swayingBalls, until } from "./harness.mjs";
+import { camera, coloursAt, hasFrame, pause, picture, scenes, settled, swayingBalls, until } from "./tools/harness.mjs";
 
 const ball = (more = "") => `[[object]]\nname = "ball"\nmodel = "icosphere"\nfrequency = 4\n${more}\n`;
 const box = (page, name) => page.getByRole("group", { name: "View" }).getByRole("checkbox", { name });

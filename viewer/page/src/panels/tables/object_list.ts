@@ -4,7 +4,8 @@ import { h, readable } from "../dom";
 import { RowWindow, type Row } from "./row_window";
 import { TableControls } from "./table_controls";
 
-const ROW_HEIGHT = 1.6875;  // in rem
+/** In rem. Fingers need higher rows than a mouse. */
+const ROW_HEIGHT = matchMedia("(pointer: coarse)").matches ? 2.5 : 1.6875;
 /** The filter and the header appear from this many objects on. */
 const FEWEST_TO_FILTER = 13;
 

@@ -65,6 +65,8 @@ export class RowWindow<Kind extends Row> {
   private rows: Kind[] = [];
   private count = 0;
   private first = 0;
+  /** The row to scroll to when the list is no longer hidden. */
+  private due: number | null = null;
 
   constructor(
     attributes: Parameters<typeof h>[1], private readonly body: HTMLElement, private readonly rowRems: number, private readonly makeRow: () => Kind,
@@ -93,6 +95,7 @@ export class RowWindow<Kind extends Row> {
     const { scale } = this;
     if (scale.boxHeight === 0) return;  // the list is hidden
     this.spacer.style.height = `${scale.scrollHeight}px`;  // the font may have changed
+    if (this.due !== null) return this.reveal(this.due);
     const { first, shown, top } = scale.inSight(this.element.scrollTop);
     this.moveTo(first);
     while (this.rows.length < shown) {
@@ -129,10 +132,14 @@ export class RowWindow<Kind extends Row> {
     return index < this.count ? this.rows[index - this.first] : undefined;
   }
 
+  /** Scrolls to a row, as soon as the list is visible. */
   reveal(index: number): void {
+    const wasDue = this.due !== null;
+    this.due = this.element.clientHeight === 0 ? index : null;
+    if (this.due !== null) return;
     const { scrollTop } = this.element;
     const wanted = this.scale.scrollTo(index, scrollTop);
-    if (wanted === scrollTop) return;
+    if (wanted === scrollTop && !wasDue) return;
     this.element.scrollTop = wanted;
     this.draw();
   }

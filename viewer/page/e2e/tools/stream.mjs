@@ -1,7 +1,7 @@
 // Measures frames per second from the program to a page in an unobserved Chromium, and to a client that only
 // reads.
 //
-// usage: node e2e/stream.mjs PATH/TO/supple
+// usage: node e2e/tools/stream.mjs PATH/TO/supple
 import { existsSync } from "node:fs";
 import { resolve } from "node:path";
 import WebSocket from "ws";
@@ -110,7 +110,7 @@ async function measure(supple, scene) {
 
 const [supple] = process.argv.slice(2);
 if (!supple || !existsSync(supple)) {
-  console.error("usage: node e2e/stream.mjs PATH/TO/supple");
+  console.error("usage: node e2e/tools/stream.mjs PATH/TO/supple");
   process.exit(2);
 }
 for (const scene of [swayingBalls(1, 100), swayingBalls(10, 32), SWAYING_CROWD]) await measure(supple, scene);

@@ -1,4 +1,4 @@
-// Makes the pictures of the viewer in docs/images, also from the view files in docs/images/views: node e2e/figures.mjs PATH/TO/supple
+// Makes the pictures of the viewer in docs/images, also from the view files in docs/images/views: node e2e/tools/figures.mjs PATH/TO/supple
 import { existsSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { chromium } from "playwright-core";
@@ -40,7 +40,7 @@ async function wholePage(stage) {
 
 const [program] = process.argv.slice(2);
 if (!program || !existsSync(program)) {
-  console.error("usage: node e2e/figures.mjs PATH/TO/supple");
+  console.error("usage: node e2e/tools/figures.mjs PATH/TO/supple");
   process.exit(2);
 }
 const browser = await chromium.launch({ executablePath: chromiumPath(), headless: true, args: CHROMIUM_FLAGS });

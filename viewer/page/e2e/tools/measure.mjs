@@ -1,4 +1,4 @@
-// Measures the time to draw on this machine: node e2e/measure.mjs PATH/TO/supple
+// Measures the time to draw on this machine: node e2e/tools/measure.mjs PATH/TO/supple
 import { existsSync } from "node:fs";
 import { resolve } from "node:path";
 import { chromium } from "playwright-core";
@@ -60,7 +60,7 @@ async function picture(stage, scene) {
 
 const [program] = process.argv.slice(2);
 if (!program || !existsSync(program)) {
-  console.error("usage: node e2e/measure.mjs PATH/TO/supple");
+  console.error("usage: node e2e/tools/measure.mjs PATH/TO/supple");
   process.exit(2);
 }
 const browser = await chromium.launch({ executablePath: chromiumPath(), headless: true, args: CHROMIUM_FLAGS });

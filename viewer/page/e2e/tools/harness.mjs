@@ -4,8 +4,9 @@ import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { reachDrawers, SIZES } from "./sizes.mjs";
 
-export const repository = resolve(dirname(fileURLToPath(import.meta.url)), "../../..");
+export const repository = resolve(dirname(fileURLToPath(import.meta.url)), "../../../..");
 export const scenes = join(repository, "scenes");
 
 const START_MILLISECONDS = 120_000;
@@ -90,12 +91,13 @@ motion = { kind = "sway", amplitude = 0.1, wavelength = 1.5, period = 1 }
 /** For pages that are slow because WebGL runs in software: a quarter of the pixels, without antialiasing. */
 export const COARSE = { deviceScaleFactor: 0.5, antialias: false };
 
-/** Everything that one test needs; cleans up after it. `options` are those of its pages. */
+/** Everything that one test needs; cleans up after it. `options` are those of its pages, which have a size and a theme. */
 export class Stage {
-  constructor(supple, browser, options = {}) {
+  constructor(supple, browser, options = {}, { size = "1280", theme = "dark" } = {}) {
     this.supple = supple;
     this.browser = browser;
-    this.options = options;
+    this.options = { ...options, colorScheme: theme };
+    this.window = SIZES[size] ?? { viewport: { width: 1280, height: 800 } };
     this.folder = mkdtempSync(join(tmpdir(), "supple-e2e-"));
     this.programs = [];
     this.contexts = [];
@@ -118,16 +120,16 @@ export class Stage {
     return program;
   }
 
-  /** An empty page whose camera moves without animation. Uncaught errors fail the test. */
+  /** An empty page whose camera moves without animation. Uncaught errors fail the test. A test with a size of its own opens drawers itself. */
   async page(options = {}) {
-    const { antialias = true, ...others } = { ...this.options, ...options };
-    const usual = { viewport: { width: 1280, height: 800 }, acceptDownloads: true, colorScheme: "dark", reducedMotion: "reduce" };
-    const context = await this.browser.newContext({ ...usual, ...others });
+    const { antialias = true, ...others } = { ...this.options, ...(options.viewport ? {} : this.window), ...options };
+    const context = await this.browser.newContext({ acceptDownloads: true, reducedMotion: "reduce", ...others });
     this.contexts.push(context);
     if (!antialias) await context.addInitScript(drawWithoutAntialiasing);
     const page = await context.newPage();
     page.setDefaultTimeout(120_000);  // ends a test that hangs; a busy machine needs long
     page.on("pageerror", (error) => this.errors.push(error.message));
+    if (!options.viewport) reachDrawers(page, others.hasTouch ?? false);
     return page;
   }
 
@@ -188,6 +190,19 @@ export async function settled(page) {
     supple.tick();
   });
 }
+
+/** For what must not happen: the page goes on for half a second or longer, as many frames as it takes. */
+export const goesOn = (page) =>
+  page.evaluate(async () => {
+    for (let i = 0; i < 30; ++i) await new Promise((done) => requestAnimationFrame(done));
+  });
+
+/** A place of the window where the view shows the ground. */
+export const groundPlace = (page) =>
+  page.evaluate(() => {
+    const { left, top } = document.querySelector("canvas.view").getBoundingClientRect();
+    return { x: left + 12, y: top + 12 };
+  });
 
 /** The content of the canvas, as a text to compare. */
 export const picture = (page) =>

@@ -1,5 +1,5 @@
 // Makes the animation of the README, docs/images/demo.webp, from frames of the viewer:
-//   node e2e/animation.mjs PATH/TO/supple
+//   node e2e/tools/animation.mjs PATH/TO/supple
 // tools/assemble_animation.py needs Debian's python3-pil.
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
@@ -13,7 +13,7 @@ const STEPS_PER_FRAME = 2;
 const SIZE = { width: 760, height: 500 };
 
 const supple = process.argv[2];
-if (!supple || !existsSync(supple)) throw new Error("usage: node e2e/animation.mjs PATH/TO/supple");
+if (!supple || !existsSync(supple)) throw new Error("usage: node e2e/tools/animation.mjs PATH/TO/supple");
 const folder = mkdtempSync(join(tmpdir(), "supple-animation-"));
 const browser = await chromium.launch({ executablePath: chromiumPath(), args: CHROMIUM_FLAGS });
 const stage = new Stage(resolve(supple), browser);
