@@ -311,7 +311,7 @@ export class App {
   private beginMoment(): void {
     const { moment, job, model, client, view } = this;
     if (model.framesSeen > 1) return;
-    if (job) void runJob(job, moment ?? 0, model, client, view);
+    if (job) void runJob(job, moment ?? 0, model, client, view, this.pins);
     else if (moment !== undefined) this.views.goTo(moment);
   }
 
