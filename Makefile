@@ -9,7 +9,7 @@ BASE ?= HEAD
 
 SECONDS ?= 30
 
-.PHONY: help demo program experiment paper test test-python build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures clean dependencies
+.PHONY: help demo program experiment paper test test-python build fuzz coverage bench bench-quick bench-kernels bench-compare contest check format docs figures pictures clean dependencies
 
 help:
 	@echo 'make demo     build the program, drop a cloth over a ball, collide nine objects, write a page that shows them'
@@ -27,6 +27,7 @@ help:
 	@echo 'make docs     write the documents that are generated from the command line and the headers'
 	@echo 'make paper    repeat the paper: every figure, its table and its claims, on one page; QUICK=1 takes five minutes'
 	@echo 'make figures  draw docs/figures/*.svg from their text (needs graphviz)'
+	@echo 'make pictures  draw docs/images: the scenes by supple render, and the page of the viewer'
 	@echo 'make clean    remove build/'
 
 demo: program
@@ -126,6 +127,10 @@ figures: $(patsubst %.dot,%.svg,$(wildcard docs/figures/*.dot))
 
 docs/figures/%.svg: docs/figures/%.dot
 	dot -Tsvg $< -o $@
+
+pictures: program
+	tools/draw_figures.sh build/release/bin/supple
+	node viewer/page/e2e/tools/figures.mjs build/release/bin/supple
 
 docs: experiment
 	tools/install_dependencies.sh --ci

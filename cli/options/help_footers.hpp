@@ -124,6 +124,8 @@ inline constexpr const char* render_footer = R"(Examples:
       A figure for a paper, as large as in print.
   supple render rabbit.obj fish.ply --view view.json -o figure.svg
       The lines of the view as SVG: outlines, wireframes, contact segments and points.
+  supple render scenes/nine.toml --frames 0-300 --plot contacts --size 120x60mm -o contacts.svg
+      A plot of the page: the contacts in each of the first 300 steps.
 
 A Chromium draws the pictures as it draws the page, so they look the same. It needs no window and no graphics
 card. Ctrl-C ends the program and its browser; files that are written are whole.)";

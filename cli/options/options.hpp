@@ -122,6 +122,7 @@ struct RenderOptions : ViewOptions {
   double dpi = 200;
   std::string background = "white", theme = "light";
   bool legend = false, scale_bar = false, colour_bar = false;
+  std::string plot;     ///< name of a plot to draw instead of the scene; empty for none
   std::string browser;  ///< path of a Chromium; empty: `find_browser` looks for one
   bool uses_graphics_card = false;
   bool quiet = false;

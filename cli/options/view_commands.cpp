@@ -11,6 +11,7 @@
 
 #include "options/help_footers.hpp"
 #include "options/option_groups.hpp"
+#include "session/pins/pin_values.hpp"
 #include "supple/simulation_descriptions.hpp"
 
 namespace supple::cli {
@@ -83,9 +84,38 @@ CLI::Option* add_word(CLI::App& app, const std::string& name, const std::vector<
       fmt::format("{} (default: {})", description, value));
 }
 
+/// The plots of the page by name: those of every run, and the values of pins, of which a vector is one.
+std::vector<std::string> names_of_plots() {
+  std::vector<std::string> names{"pairs", "contacts", "times"};
+  for_each_field<viewer::PinValues>([&](const auto& field) {
+    std::string_view value = field.name;
+    if (value.ends_with("_x") || value.ends_with("_y") || value.ends_with("_z")) value.remove_suffix(2);
+    if (std::string name = fmt::format("pin-{}", value); name != names.back())
+      names.push_back(std::move(name));
+  });
+  return names;
+}
+
+CLI::Option* add_plot(CLI::App& app, RenderOptions& options) {
+  static const std::vector<std::string> names = names_of_plots();
+  std::vector<const char*> words;
+  for (const std::string& name : names) words.push_back(name.c_str());
+  return add_words(
+      app, "--plot", words, [&options](std::size_t place) { options.plot = names[place]; },
+      "Draw a plot over the frames instead of the scene: pairs of objects, contacts, times of the stages, or "
+      "a "
+      "value of the pins in the view file. A simulation needs --frames. Of a recording, pins have the values "
+      "of "
+      "these frames");
+}
+
 void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dependences) {
   const auto group = [](CLI::Option* option) { return option->group("Pictures"); };
   const auto is_png = [&options] { return !options.is_svg; };
+  const auto of_scene = [&](CLI::Option* option) {
+    dependences.push_back({option, [&options] { return options.plot.empty(); },
+                           "a picture of the scene, which --plot replaces"});
+  };
   group(app.add_option_function<std::string>(
                "-o,--output",
                [&options](const std::string& name) {
@@ -102,7 +132,7 @@ void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dep
   group(app.add_option_function<std::string>(
                "--frames", [&options](const std::string& given) { options.frames = parse_frames(given); },
                "Frames of a recording, or steps of a simulation, each STEP-th (default: the one of the view "
-               "file, or 0)")
+               "file, or 0; with --plot, all frames of a recording)")
             ->type_name("A-B:STEP"));
   group(app.add_option_function<std::string>(
                "--size", [&options](const std::string& given) { options.size = parse_size(given); },
@@ -111,18 +141,23 @@ void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dep
   group(add_real(
       app, "--dpi", ValueRange::from(10, 2400), "", [&options](double dpi) { options.dpi = dpi; },
       "Pixels per inch: of sizes in millimetres, and the scale of texts and marks (default: 200)"));
-  group(add_word(app, "--background", {"white", "transparent", "theme"}, options.background,
-                 "What is behind the objects; theme is that of the page, with its floor and axes"));
+  group(add_plot(app, options));
+  of_scene(group(add_word(app, "--background", {"white", "transparent", "theme"}, options.background,
+                          "What is behind the objects; theme is that of the page, with its floor and axes")));
   dependences.push_back({group(add_word(app, "--theme", {"light", "dark"}, options.theme,
                                         "Colours of the background and of texts on it")),
                          [&options] { return options.background != "white"; },
                          "--background theme or transparent"});
-  group(app.add_flag("--legend", options.legend, "Draw the names of the visible objects with their colours"));
-  group(app.add_flag("--colour-bar", options.colour_bar,
-                     "Draw the colours of the field that the view file chooses, with their values"));
-  group(app.add_flag("--scale-bar", options.scale_bar,
-                     "Draw a bar of a round length. It holds everywhere in an orthographic view, and at the "
-                     "target of the camera in perspective, which the picture then says"));
+  of_scene(group(app.add_flag("--legend", options.legend,
+                              "Draw the names of the visible objects with their colours, but not of those "
+                              "that a field covers")));
+  of_scene(
+      group(app.add_flag("--colour-bar", options.colour_bar,
+                         "Draw the colours of the field that the view file chooses, with their values")));
+  of_scene(group(
+      app.add_flag("--scale-bar", options.scale_bar,
+                   "Draw a bar of a round length. It holds everywhere in an orthographic view, and at the "
+                   "target of the camera in perspective, which the picture then says")));
   group(
       app.add_option("--browser", options.browser,
                      "Chromium that draws the pictures (default: the variable SUPPLE_CHROMIUM, or the first "
@@ -133,6 +168,7 @@ void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dep
                           "Draw on the graphics card; otherwise the browser draws in software, which gives "
                           "the same pictures on every machine")),
        is_png, "PNG files"});
+  of_scene(app.get_option("--gpu"));
   group(app.add_flag("--quiet", options.quiet, "Print no progress and no summary"));
 }
 

@@ -79,6 +79,11 @@ std::string job_of(const RenderOptions& options, Pixels size) {
   json.member("legend", options.legend);
   json.member("scale_bar", options.scale_bar);
   json.member("colour_bar", options.colour_bar);
+  json.key("plot");
+  if (options.plot.empty())
+    json.null();
+  else
+    json.value(std::string_view(options.plot));
   json.end_object();
   return std::string(json.text());
 }
@@ -109,8 +114,9 @@ class Run {
       : options_(options),
         names_(std::move(names)),
         size_(size),
-        planned_(options.frames ? options.frames->count() : 1),
-        progress_(planned_, !options.quiet, "picture") {}
+        frames_(options.frames ? options.frames->count() : 1),
+        planned_(options.plot.empty() ? frames_ : 1),
+        progress_(frames_, !options.quiet, options.plot.empty() ? "picture" : "frame") {}
 
   int go(viewer::SceneView show, const std::string& page, const std::string& program) {
     viewer::Server server(
@@ -149,6 +155,10 @@ class Run {
     const viewer::JsonValue* const kind = result.head.find("kind");
     const std::string word = kind ? kind->text : "";
     if (word == "picture") return write(result);
+    if (word == "step") {
+      ++passed_;
+      progress_.update(passed_, fmt::format("frame {} of {}", passed_, frames_));
+    }
     if (word == "end") has_ended_ = true;
     if (word == "failure") {
       const viewer::JsonValue* const message = result.head.find("message");
@@ -160,7 +170,7 @@ class Run {
     const viewer::JsonValue* const step = result.head.find("step");
     viewer::replace_file(names_.of(step ? static_cast<std::uint64_t>(step->integer) : 0), result.content);
     ++taken_;
-    progress_.update(taken_, fmt::format("picture {} of {}", taken_, planned_));
+    if (options_.plot.empty()) progress_.update(taken_, fmt::format("picture {} of {}", taken_, planned_));
   }
 
   std::string saved_so_far() const {
@@ -170,15 +180,21 @@ class Run {
   const RenderOptions& options_;
   PictureNames names_;
   Pixels size_;
-  std::uint64_t planned_, taken_ = 0;
+  std::uint64_t frames_, planned_;
+  std::uint64_t taken_ = 0, passed_ = 0;
   Progress progress_;
   bool has_begun_ = false, has_ended_ = false, has_left_ = false;
   std::string fault_;
 };
 
 void check_frames(const RenderOptions& options, const viewer::SceneView& show, const PictureNames& names) {
+  const bool is_plot = !options.plot.empty();
+  if (is_plot && !show.frames && !options.frames)
+    throw Error("--plot: a simulation has no end; choose its steps, such as --frames 0-100");
+  if (is_plot && names.has_number())
+    throw Error(fmt::format("--output: {}: a plot is one picture; write a name without %", options.output));
   if (!options.frames) return;
-  if (!names.has_number() && options.frames->count() > 1)
+  if (!is_plot && !names.has_number() && options.frames->count() > 1)
     throw Error(
         fmt::format("--output: {}: the pictures of several frames need different names; write %04d "
                     "where the number of the frame shall be",

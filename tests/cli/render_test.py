@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import struct
@@ -104,6 +105,10 @@ class RenderErrors(ProgramTest):
             (("-o", "a.png", "--frames", "0-1"), "the pictures of several frames need different names"),
             (("-o", "a.svg", "--gpu"), "--gpu: has no effect without PNG files"),
             (("--view", "none.json"), "none.json: cannot be read"),
+            (("--plot", "gap"), "'gap' is not one of pairs, contacts, times, pin-contacts, pin-gap"),
+            (("--plot", "pairs"), "--plot: a simulation has no end; choose its steps, such as --frames 0-100"),
+            (("--plot", "pairs", "--legend"), "--legend: has no effect without a picture of the scene"),
+            (("--plot", "pairs", "--frames", "0-3", "-o", "a%d.svg"), "a plot is one picture"),
         )
         for arguments, error in refused:
             with self.subTest(arguments):
@@ -220,11 +225,55 @@ class Render(ProgramTest):
         done = self.run_here("render", *meshes, "--view", "view.json", "-o", "a.svg")
         self.assert_one_line_error(done, "An SVG cannot show a slice. Choose PNG, or no slice")
 
+    def test_a_legend_has_no_object_that_a_field_covers(self):
+        scene = self.write("scene.toml", BODY)
+        self.write("view.json", '{"version": 1, "field": {"key": "speed"}}')
+        arguments = ("--view", "view.json", "--size", "200x100", "--frames", "0-1", "--legend", "-o", "%d.png")
+        self.render(scene, *arguments)
+        swatches = [pixels(self.picture(f"{frame}.png"))[35][35][:3] for frame in (0, 1)]
+        self.assertNotEqual(swatches[0], (255, 255, 255), "there are no speeds in the first frame")
+        self.assertEqual(swatches[1], (255, 255, 255))
+
+    def labels(self, name):
+        """The texts of a plot and its lines, each with the number of its points."""
+        space = "{http://www.w3.org/2000/svg}"
+        root = xml.etree.ElementTree.parse(self.folder / name).getroot()
+        lines = [path.get("d") for path in root.iter(space + "path") if path.get("stroke-width")]
+        return [text.text for text in root.iter(space + "text")], [len(re.findall("[ML]", line)) for line in lines]
+
+    def test_plots_of_a_simulation(self):
+        scene = self.write("scene.toml", BODY)
+        out = self.render(scene, "--frames", "2-12:5", "--plot", "contacts", "--size", "80x40mm", "-o", "a.svg")
+        self.assertIn("a.svg: 1 picture", out)
+        labels, points = self.labels("a.svg")
+        self.assertEqual((labels[0], points), ("Contacts and candidates", [3, 3]))
+        self.assertLessEqual({"step", "contacts", "candidate pairs", "4", "12"}, set(labels))
+        self.render(scene, "--frames", "0-3", "--plot", "times", "--size", "300x150", "--dpi", "100", "-o", "a.png")
+        parts = chunks(self.picture("a.png"))
+        self.assertEqual(struct.unpack_from(">II", parts["IHDR"]), (300, 150))
+        self.assertEqual(struct.unpack(">IIB", parts["pHYs"]), (3937, 3937, 1))
+
+    def test_plots_of_a_recording(self):
+        scene = self.write("scene.toml", BODY)
+        self.run_here("simulate", scene, "--frames", "11", "--record", "run.h5", "--quiet")
+        self.render("run.h5", "--plot", "pairs", "-o", "pairs.svg")
+        labels, points = self.labels("pairs.svg")
+        self.assertEqual(points, [11])
+        self.assertLessEqual({"frame", "object pairs", "10"}, set(labels))
+        self.write("view.json", '{"version": 1, "pins": {"1": {"a": "box"}}}')
+        self.render("run.h5", "--plot", "pin-displacement", "--frames", "2-6", "--view", "view.json", "-o", "pin.svg")
+        labels, points = self.labels("pin.svg")
+        self.assertEqual(points, [5])
+        self.assertIn("box", labels)
+        done = self.run_here("render", "run.h5", "--plot", "pin-gap", "-o", "none.svg")
+        self.assert_one_line_error(done, "The view file has no pin of an object of this scene")
+        self.assertFalse((self.folder / "none.svg").exists())
+
     def test_where_it_cannot_be_written(self):
         mesh = self.write("a.obj", TRIANGLE)
-        for name in ("none/a.png", "temporary.png"):
+        for name, *plot in (("none/a.png",), ("temporary.png",), ("none/a.svg", "--plot", "pairs", "--frames", "0-1")):
             (self.folder / "temporary.png").mkdir(exist_ok=True)
-            done = self.run_here("render", mesh, "-o", name, TMPDIR=str(self.temporary))
+            done = self.run_here("render", mesh, *plot, "-o", name, TMPDIR=str(self.temporary))
             self.assert_one_line_error(done, f"{name}: cannot write", "choose a writable folder")
             self.assert_nothing_is_left()
 

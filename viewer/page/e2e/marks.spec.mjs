@@ -118,8 +118,19 @@ async function pairsAreSorted(stage) {
   assert.deepEqual(await column(2), ["ball 1", "ball 2", "ball 9"]);
 }
 
+/** Names of usual length are not cut, because numbers at their end tell them apart. */
+async function namesAreWhole(stage) {
+  const { page } = await stage.view(stage.file("names.toml", ball("end wall 1", 0) + ball("rabbit 16", 1.9)));
+  const table = page.getByRole("treegrid", { name: "Contacts" });
+  await table.getByText("rabbit 16").click();  // lists its contacts
+  await table.getByText(/^face \d{3}$/).first().waitFor();
+  const cut = await table.locator(".row:visible > *").evaluateAll((cells) => cells.filter((cell) => cell.scrollWidth > cell.clientWidth).map((cell) => cell.textContent));
+  assert.deepEqual(cut, []);
+}
+
 export const tests = [
   ["pairs are sorted by each column", pairsAreSorted],
+  ["names are whole", namesAreWhole],
   ["a small gap is seen", smallGapsAreSeen],
   ["dense marks thin out", denseMarksThinOut],
   ["the first line says what touches", theFirstLineSaysWhatTouches],

@@ -27,6 +27,7 @@ import { Program } from "./panels/program";
 import { Plots } from "./panels/plots";
 import { LAYER_ROWS, ScenePanel } from "./panels/scene_panel";
 import { Settings } from "./panels/settings";
+import { Pace } from "./pace";
 import { Pins, type Pin } from "./pins";
 import { Tabs } from "./panels/tabs";
 import { Tools } from "./tools";
@@ -86,8 +87,7 @@ export class App {
   private readonly filmButton = iconButton("film", "Record a video", "Shift+V", () => this.film());
   private drawers: HTMLButtonElement[] = [];
   private readonly toolButtons = new Map<Tool, HTMLButtonElement>();
-  /** Frames of the last second: when each came, and its simulated time. */
-  private arrivals: { at: number; time: number }[] = [];
+  private readonly pace = new Pace();
   private tabs!: Tabs;
   private hasDrawn = false;  // a frame of the present scene
   private hasRestored = false;
@@ -256,9 +256,7 @@ export class App {
     model.on("frame", ({ text }) => {
       this.card.hide();
       this.beginMoment();
-      const last = this.arrivals.at(-1);
-      if (last && text.time < last.time) this.arrivals = [];
-      this.arrivals.push({ at: performance.now(), time: text.time });
+      this.pace.add(performance.now(), text.time);
     });
     model.on("tool", (tool) => {
       for (const [name, button] of this.toolButtons) button.setAttribute("aria-checked", String(name === tool));
@@ -313,7 +311,7 @@ export class App {
   private beginMoment(): void {
     const { moment, job, model, client, view } = this;
     if (model.framesSeen > 1) return;
-    if (job) void runJob(job, moment ?? 0, model, client, view);
+    if (job) void runJob(job, moment ?? 0, model, client, view, this.pins);
     else if (moment !== undefined) this.views.goTo(moment);
   }
 
@@ -328,11 +326,10 @@ export class App {
 
   /** Updates that are not needed in every frame. */
   private tick(): void {
-    const now = performance.now();
-    this.arrivals = this.arrivals.filter(({ at }) => at > now - 1000);
-    const [first, last] = [this.arrivals[0], this.arrivals.at(-1)];
-    const factor = first && last && last.at > first.at ? (1000 * (last.time - first.time)) / (last.at - first.at) : null;
-    this.player.showRate(this.player.playing && this.client.status.state === "connected" ? this.arrivals.length : 0, factor);
+    const isPlaying = this.player.playing && this.client.status.state === "connected";
+    if (!isPlaying) this.pace.clear();
+    const { rate, factor } = this.pace.at(performance.now());
+    this.player.showRate(rate, factor);
     this.scenePanel.showCounts(this.view.layers.counts(), this.view.isFlat);
   }
 

@@ -10,7 +10,7 @@ export const OKABE_ITO = {
 } as const;
 
 /** Colours of objects: pale, so that the dark colours of marks have a contrast of 3:1 on each of them. */
-export const OBJECT_COLOURS = ["#8ecae6", "#f2c879", "#86d3b8", "#e9b8d2", "#a9bdf2", "#c9d1d8", "#b9d89c", "#dcbfa8"];
+export const OBJECT_COLOURS = ["#8ecae6", "#f2c879", "#86d3b8", "#e9b8d2", "#a9bdf2", "#c9d1d8", "#b9d89c", "#dcbfa8", "#e3dc7a", "#f2b0a2", "#cdb0f0", "#8fd9dd"];
 export const objectColour = (index: number): string => OBJECT_COLOURS[index % OBJECT_COLOURS.length]!;
 
 /** Colours of marks, the same in both themes. A light halo separates them from a dark ground. */

@@ -107,7 +107,7 @@ interface ModelEvents {
   pulled: null;
 }
 
-const LIVE_ROWS = 4000;
+const MOST_ROWS = 4000;
 
 /** Rows of numbers: one per frame of a recording, one per step of a simulation, of the last steps. */
 export class History {
@@ -115,6 +115,8 @@ export class History {
   columns: number[][] = [];
   frames: number[] = [];
   events = noEvents();
+  /** The rows of a simulation that are kept. */
+  most = MOST_ROWS;
 
   reset(names: string[]): void {
     this.names = names;
@@ -131,8 +133,8 @@ export class History {
     this.frames.push(frame);
     this.columns[0]!.push(time);
     for (let i = 1; i < this.columns.length; ++i) this.columns[i]!.push(statistics[i - 1] ?? NaN);
-    if (this.frames.length <= LIVE_ROWS) return;
-    const surplus = LIVE_ROWS / 4;  // remove many rows at once, so that the cost per frame is small
+    if (this.frames.length <= this.most) return;
+    const surplus = this.most / 4;  // remove many rows at once, so that the cost per frame is small
     this.frames.splice(0, surplus);
     for (const column of this.columns) column.splice(0, surplus);
     const first = this.frames[0]!;

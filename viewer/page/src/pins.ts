@@ -88,6 +88,8 @@ export function titleOf({ names, objects, contact }: Pin): string {
 
 export class Pins extends Emitter<PinEvents> {
   list: Pin[] = [];
+  /** The rows of a simulation that are kept. */
+  mostRows = MOST_ROWS;
   private next = 1;
   private run = "";
   /** No frame has come since the options of the session may have changed. */
@@ -191,7 +193,7 @@ export class Pins extends Emitter<PinEvents> {
     for (const pin of this.list) {
       const data = rows.get(pin.number);
       for (let i = 0; data && i < data.length; i += width) pin.series.add(data.subarray(i, i + width), keeps);
-      if (this.model.scene!.frames === null) pin.series.limit(MOST_ROWS);
+      if (this.model.scene!.frames === null) pin.series.limit(this.mostRows);
     }
     this.emit("rows", null);
   }

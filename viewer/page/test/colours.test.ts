@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { GAPS, HALO, MARKS, OBJECT_COLOURS } from "../src/colours";
+import { GAPS, HALO, MARKS, OBJECT_COLOURS, objectColour } from "../src/colours";
 
 /** Relative luminance and contrast as WCAG 2 defines them. */
 function luminance(colour: string): number {
@@ -20,6 +20,10 @@ const marks = [...Object.values(MARKS), ...GAPS];
 test("the contrast is that of WCAG", () => {
   assert.equal(contrast("#000000", "#ffffff"), 21);
   assert.ok(Math.abs(contrast("#777777", "#ffffff") - 4.478) < 1e-3);
+});
+
+test("the nine objects of the first example have colours of their own", () => {
+  assert.equal(new Set(Array.from({ length: 9 }, (_, i) => objectColour(i))).size, 9);
 });
 
 test("marks are seen on all objects and on their halo", () => {

@@ -4,7 +4,7 @@ import * as THREE from "three";
 import type { Pen } from "../src/capture/pen";
 import { barHeight, barOf, drawColourBar, ticksOf } from "../src/fields/colour_bar";
 import { colourAt, MAPS } from "../src/fields/colour_maps";
-import { firstChoice, rangeOf, readField, tickText } from "../src/fields/fields";
+import { firstChoice, rangeOf, readField, showsColour, tickText } from "../src/fields/fields";
 import { fillArrows } from "../src/fields/marks";
 import { FieldPaint } from "../src/fields/paint";
 import { Model, type ObjectState } from "../src/model";
@@ -24,6 +24,18 @@ function modelWith(key: string | null, frame: FrameMessage): Model {
   model.takeFrame(frame);
   return model;
 }
+
+test("an object that a field covers shows no colour of its own", () => {
+  const shown = (key: string | null, ...sections: Section[]) => {
+    const model = modelWith(key, frameOf(key, ...sections));
+    return model.objects.map((object) => showsColour(readField(model), object));
+  };
+  const whole = floats(61, 1, [4, 5, 6, 7], 1);
+  assert.deepEqual(shown("speed", floats(61, 1, [1, 2, 3], 0), whole), [false, false]);
+  assert.deepEqual(shown("speed", floats(61, 1, [1, NaN, 3], 0), whole), [true, false]);
+  assert.deepEqual(shown("speed", whole), [true, false]);
+  assert.deepEqual(shown(null), [true, true]);
+});
 
 test("colour maps are those of matplotlib", () => {
   const hex = (map: (typeof MAPS)[number]) => [0, 64, 128, 200, 255].map((i) => colourAt(map, i / 255));

@@ -71,5 +71,18 @@ test("a plot as SVG has its lines, with gaps, and round ticks", () => {
   assert.ok(svg.includes(">Pairs &#38; more<"), svg);
   assert.equal(svg.match(/stroke-width="1.5"/g)!.length, 2);
   assert.ok(/d="M56 204L193.33 124M468 44" stroke="#0072b2"/.test(svg), svg);
+  assert.ok(svg.startsWith('<svg xmlns="http://www.w3.org/2000/svg" width="480" height="240" viewBox="0 0 480 240">'), svg);
   for (const tick of ["0", "2", "4", "6", "8", "10", "11", "12", "13"]) assert.ok(svg.includes(`>${tick}</text>`), tick);
+});
+
+test("labels of a plot are in as many rows as they need, and its curves are below them", () => {
+  const lines = Array.from({ length: 9 }, (_, i) => ({ label: `stage ${i}`, colour: "#0072b2", values: [0, 10] }));
+  const svg = plotSvg("Times", "step", [0, 1], lines, { width: 200, height: 300, millimetres: 50 });
+  assert.ok(svg.includes('width="50mm" height="75mm" viewBox="0 0 200 300"'), svg);
+  const labels = [...svg.matchAll(/<text x="([\d.]+)" y="([\d.]+)"[^>]*>stage/g)].map(([, x, y]) => [Number(x), Number(y)] as const);
+  assert.equal(new Set(labels.map(([x, y]) => `${x} ${y}`)).size, 9);
+  const highest = Math.max(...labels.map(([, y]) => y));
+  const tops = [...svg.matchAll(/L188 ([\d.]+)" stroke="#0072b2"/g)].map(([, y]) => Number(y));
+  assert.equal(tops.length, 9);
+  assert.ok(tops.every((y) => y > highest), `${tops} ${highest}`);
 });

@@ -1,16 +1,17 @@
 /** One picture of the view: its size, its background and what is drawn over it. */
 import { barOf } from "../fields/colour_bar";
+import { readField, showsColour } from "../fields/fields";
 import type { Model } from "../model";
 import { colourOf } from "../panels/dom";
 import type { Background, PictureSize, SceneView } from "../view/scene_view";
 import { drawOverlay, type Overlay } from "./overlay";
-import { canvasPen } from "./pen";
+import { canvasPen, millimetresOf } from "./pen";
 import { encode } from "./picture";
 import { withResolution } from "./png";
-import { millimetresOf, svgOf } from "./svg";
+import { svgOf } from "./svg";
 
 /** CSS pixels per inch. */
-const CSS_DPI = 96;
+export const CSS_DPI = 96;
 
 export interface Figure {
   size: PictureSize;
@@ -29,13 +30,14 @@ export const ratioOf = ({ size, dpi }: Figure, view: SceneView): number =>
 
 function overlayOf(model: Model, view: SceneView, figure: Figure): Overlay {
   const ratio = ratioOf(figure, view);
-  const { size: { width, height }, background, legend, scaleBar, colourBar } = figure;
+  const { size: { width, height }, background, format, legend, scaleBar, colourBar } = figure;
   const isWhite = background === "white";
+  const field = format === "svg" ? null : readField(model);  // an SVG has no fields
   return {
     width: width / ratio, height: height / ratio,
     ink: isWhite ? "#1b2027" : colourOf("--ink"),
     halo: isWhite ? "#ffffff" : background === "transparent" ? null : colourOf("--ground"),
-    objects: legend ? model.objects.filter(({ visible, vertices }) => visible && vertices > 0) : null,
+    objects: legend ? model.objects.filter((object) => object.visible && object.vertices > 0 && showsColour(field, object)) : null,
     scale: scaleBar ? { perPixel: (view.rig.visibleHeight * ratio) / height, unit: model.unit, isPerspective: !view.rig.isOrthographic } : null,
     bar: colourBar ? barOf(model) : null,
   };
@@ -45,7 +47,7 @@ function svgFigure(model: Model, view: SceneView, figure: Figure): Blob {
   const overlay = overlayOf(model, view, figure);
   const { width, height, ink, halo } = overlay;
   const svg = svgOf(model, {
-    width, height, ink, ground: halo, matrix: view.matrix(),
+    width, height, ink, ground: halo, matrix: view.matrix(), usesColours: figure.legend,
     millimetres: figure.dpi === null ? null : millimetresOf(figure.size.width, figure.dpi),
   }, (pen) => drawOverlay(pen, overlay));
   return new Blob([svg], { type: "image/svg+xml" });

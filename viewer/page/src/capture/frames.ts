@@ -25,16 +25,18 @@ interface Taken {
 
 type Keep = (picture: Blob, at: FrameText) => Promise<void>;
 
+/** Goes to a frame of a recording, or to a later step of a simulation, and waits for it. */
+export function goTo(model: Model, client: Client, wanted: number, signal: AbortSignal): Promise<FrameText> {
+  const arrival = client.frameThat((frame) => frame.step === wanted, signal);
+  client.send(model.can("seek") ? { do: "seek", frame: wanted } : { do: "step", count: wanted - model.frame!.text.step });
+  return arrival;
+}
+
 /**
  * Takes the pictures of a plan, one after the other. The session is paused first and stays at the last step.
  * Throws a sentence when the session ends or fails, with the reason of `signal`, or what `keep` throws.
  */
 export async function takeFrames(model: Model, client: Client, view: SceneView, plan: FramesPlan, signal: AbortSignal, keep: Keep): Promise<void> {
-  const goTo = (wanted: number, steps: number): Promise<FrameText> => {
-    const arrival = client.frameThat((frame) => frame.step === wanted, signal);
-    client.send(model.can("seek") ? { do: "seek", frame: wanted } : { do: "step", count: steps });
-    return arrival;
-  };
   const { figure, first, every, count } = plan;
   try {
     view.setPicture(figure.size, figure.background, ratioOf(figure, view), figure.format === "svg" || figure.scaleBar);
@@ -43,11 +45,11 @@ export async function takeFrames(model: Model, client: Client, view: SceneView, 
     const isOffered = model.scene!.fields.some((form) => form.key === key);
     if (figure.colourBar && !isOffered) throw new Error(key === null ? "No field is chosen, so there is no colour bar." : `This scene has no field ${key}.`);
     let at = await client.frameThat((frame) => !frame.playing && (!isOffered || frame.field === key), signal);
-    if (first !== null && at.step !== first) at = await goTo(first, first - at.step);
+    if (first !== null && at.step !== first) at = await goTo(model, client, first, signal);
     for (let taken = 1; ; ++taken) {
       const picture = drawFigure(model, view, figure);
       const hasMore = taken < count && at.step + every < (model.scene!.frames ?? Infinity);
-      const next = hasMore ? goTo(at.step + every, every) : null;  // runs while this picture is encoded
+      const next = hasMore ? goTo(model, client, at.step + every, signal) : null;  // runs while this picture is encoded
       next?.catch(() => {});  // the error is reported after the picture is stored
       await keep(await picture, at);
       if (!next) return;

@@ -4,11 +4,13 @@
  */
 import type { Client } from "../client";
 import type { Model } from "../model";
+import type { Pins } from "../pins";
 import type { Background, SceneView } from "../view/scene_view";
 import { takeFrames } from "./frames";
+import { takePlot } from "./plots";
 
 interface Job {
-  /** First, last, every n-th; null for the step of the view, or 0. */
+  /** First, last, every n-th; null for the step of the view, or 0. A plot has all frames of a recording then. */
   frames: [number, number, number] | null;
   width: number;
   height: number;
@@ -19,6 +21,8 @@ interface Job {
   legend: boolean;
   scale_bar: boolean;
   colour_bar: boolean;
+  /** The plot to draw instead of the scene, or null. */
+  plot: string | null;
 }
 
 /** The job in this page; null in a page for people. */
@@ -28,11 +32,17 @@ export function embeddedJob(): Job | null {
 }
 
 /** Call when the first frame is there. Sends all pictures, then the end or what went wrong. */
-export async function runJob(job: Job, step: number, model: Model, client: Client, view: SceneView): Promise<void> {
+export async function runJob(job: Job, step: number, model: Model, client: Client, view: SceneView, pins: Pins): Promise<void> {
   const [first, last, every] = job.frames ?? [step, step, 1];
   const { width, height, dpi, format, background } = job;
   const figure = { size: { width, height }, dpi, format, background, legend: job.legend, scaleBar: job.scale_bar, colourBar: job.colour_bar };
   try {
+    if (job.plot !== null) {
+      const plan = { ...job, name: job.plot, size: figure.size };
+      const plot = await takePlot(model, client, pins, plan, (step) => client.deliver({ kind: "step", step }));
+      await client.deliver({ kind: "picture", step: last }, plot);
+      return await client.deliver({ kind: "end" });
+    }
     const plan = { first, count: Math.floor((last - first) / every) + 1, every, figure };
     await takeFrames(model, client, view, plan, new AbortController().signal, (picture, at) => client.deliver({ kind: "picture", step: at.step }, picture));
     await client.deliver({ kind: "end" });

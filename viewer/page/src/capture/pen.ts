@@ -64,3 +64,22 @@ export function svgPen(parts: string[]): Pen {
     },
   };
 }
+
+export interface Sheet {
+  /** In CSS pixels. */
+  width: number;
+  height: number;
+  /** The width in print; null for CSS pixels. */
+  millimetres: number | null;
+}
+
+const MILLIMETRES_PER_INCH = 25.4;
+export const millimetresOf = (pixels: number, dpi: number): number => (pixels / dpi) * MILLIMETRES_PER_INCH;
+
+export function svgFile({ width, height, millimetres }: Sheet, parts: string[]): string {
+  const size = (length: number) => (millimetres === null ? short(length) : `${short((length / width) * millimetres)}mm`);
+  return (
+    `<svg xmlns="http://www.w3.org/2000/svg" width="${size(width)}" height="${size(height)}" viewBox="0 0 ${short(width)} ${short(height)}">\n` +
+    `${parts.join("\n")}\n</svg>\n`
+  );
+}

@@ -3,26 +3,22 @@ import { MARKS } from "../colours";
 import type { Model, ObjectState } from "../model";
 import { eachContactPoint, eachContactSegment } from "../view/layers";
 import { DepthBuffer, edgesOf, outlineOf, project, visibleParts, type Projected } from "./lines";
-import { short, svgPen, type Pen } from "./pen";
+import { short, svgFile, svgPen, type Pen, type Sheet } from "./pen";
 
 /** Lines are hidden to a pixel of a buffer of this size. */
 const BUFFER_SIDE = 2400;
 /** Larger files open slowly or not at all. */
 const MOST_LINES = 400_000;
-const MILLIMETRES_PER_INCH = 25.4;
 
 /** In CSS pixels. */
 const WIDTHS = { outline: 1.2, wireframe: 0.5, segment: 1.6 };
 
-export interface SvgPlan {
-  /** In CSS pixels. */
-  width: number;
-  height: number;
-  /** The width of the picture in millimetres; null for CSS pixels. */
-  millimetres: number | null;
+export interface SvgPlan extends Sheet {
   /** The colour of the background; null for none. */
   ground: string | null;
   ink: string;
+  /** Whether outlines have the colours of the objects, as a legend shows them. */
+  usesColours: boolean;
   /** From positions to clip space, in columns. */
   matrix: ArrayLike<number>;
 }
@@ -61,7 +57,7 @@ class Drawing {
     const pieces: string[] = [];
     const end = (vertex: number): [number, number, number] => [at[3 * vertex]!, at[3 * vertex + 1]!, at[3 * vertex + 2]!];
     for (let i = 0; i < wanted.length; i += 4) this.line(pieces, end(wanted[i]!), end(wanted[i + 1]!), this.buffer);
-    this.path(pieces, layers.surface ? this.plan.ink : object.colour, layers.wireframe ? WIDTHS.wireframe : WIDTHS.outline);
+    this.path(pieces, layers.surface && !this.plan.usesColours ? this.plan.ink : object.colour, layers.wireframe ? WIDTHS.wireframe : WIDTHS.outline);
   }
 
   marks(): void {
@@ -85,7 +81,7 @@ class Drawing {
 /** `overlay` draws over the lines. Throws with a sentence for a view that lines cannot show. */
 export function svgOf(model: Model, plan: SvgPlan, overlay: (pen: Pen) => void): string {
   if (model.slice !== "off") throw new Error("An SVG cannot show a slice. Choose PNG, or no slice.");
-  const { width, height, millimetres, ground } = plan;
+  const { width, height, ground } = plan;
   const objects = model.objects.filter(({ visible }) => visible);
   const places = new Map(objects.map((object) => [object, project(object.positions, plan.matrix, width, height)]));
   const drawing = new Drawing(model, plan, places);
@@ -93,11 +89,5 @@ export function svgOf(model: Model, plan: SvgPlan, overlay: (pen: Pen) => void):
   for (const object of objects) drawing.edges(object);
   drawing.marks();
   overlay(svgPen(drawing.parts));
-  const size = (length: number) => (millimetres === null ? short(length) : `${short((length / width) * millimetres)}mm`);
-  return (
-    `<svg xmlns="http://www.w3.org/2000/svg" width="${size(width)}" height="${size(height)}" viewBox="0 0 ${short(width)} ${short(height)}">\n` +
-    `${drawing.parts.join("\n")}\n</svg>\n`
-  );
+  return svgFile(plan, drawing.parts);
 }
-
-export const millimetresOf = (pixels: number, dpi: number): number => (pixels / dpi) * MILLIMETRES_PER_INCH;

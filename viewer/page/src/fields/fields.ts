@@ -1,5 +1,5 @@
 /** The numbers of the chosen field in the newest frame, and the range that its colours cover. */
-import type { Model } from "../model";
+import type { Model, ObjectState } from "../model";
 import type { FieldForm } from "../protocol/field_form";
 import type { FrameMessage } from "../protocol/messages";
 import { isDiverging, type MapName } from "./colour_maps";
@@ -68,6 +68,15 @@ export function readField({ scene, frame, field, objects }: Model): FieldData | 
   let data = cache.get(frame);
   if (!data) cache.set(frame, (data = collect(form, frame, objects.map(({ vertices, triangles }) => (form.element === "face" ? triangles : vertices)))));
   return data;
+}
+
+/** Whether an object still shows its colour: where the field has no value for it. */
+export function showsColour(data: FieldData | null, { index, corners, vertices, triangles }: Pick<ObjectState, "index" | "corners" | "vertices" | "triangles">): boolean {
+  if (!data || data.form.element === "contact") return true;
+  const isOfFaces = data.form.element === "face";
+  const hasRest = isOfFaces && corners.length > 3 * triangles;  // edges and points
+  const values = data.values.get(index);
+  return hasRest || !values || values.length < (isOfFaces ? triangles : vertices) || !values.every(Number.isFinite);
 }
 
 /** The values at both ends of the colour map. Zero is in the middle of a diverging map. */

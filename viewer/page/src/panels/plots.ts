@@ -2,6 +2,7 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { plotSvg } from "../capture/plot_svg";
+import { linesOf, nounOf, plotsOf, type PlotForm } from "../capture/plots";
 import { OKABE_ITO } from "../colours";
 import { EVENT_LABELS, type Model } from "../model";
 import { EVENT_KINDS, type EventKind } from "../protocol/messages";
@@ -9,18 +10,11 @@ import { colourOf, download, h, readable, remPixels, stamp } from "./dom";
 
 const HEIGHT = 132;
 const REDRAW_MILLISECONDS = 150;
-const LINES = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.vermillion, OKABE_ITO.purple, OKABE_ITO.sky, "#8a8f98", "#9c6b3c"];
 
 interface Plot {
-  title: string;
-  columns: string[];
-  scale: number;
+  form: PlotForm;
   plot: uPlot;
 }
-
-const isStage = (name: string): boolean => name.endsWith("_seconds");
-/** Columns of the second of two recordings end with `_b`. */
-const labelOf = (name: string): string => name.replace(/_b$/, " of B").replace(/_seconds$/, "").replace(/_/g, " ");
 
 export class Plots {
   readonly element = h("div", { class: "plots" });
@@ -46,25 +40,19 @@ export class Plots {
     this.plots = [];
     this.element.replaceChildren();
     if (!this.model.scene) return;
-    const { names } = this.model.history;
-    const has = (wanted: string[]) => wanted.flatMap((name) => [name, `${name}_b`]).filter((name) => names.includes(name));
-    const stages = names.filter(isStage);
-    this.add("Object pairs", has(["object_pairs"]), 1);
-    const near = this.model.scene.contacts.includes("proximity") ? ["proximity_pairs"] : [];
-    this.add("Contacts and candidates", has(["contacts", "candidate_pairs", ...near]), 1);
-    this.add("Time per stage, milliseconds", stages, 1000);
+    for (const form of plotsOf(this.model)) this.add(form);
     if (this.plots.length === 0) this.element.append(h("p", { class: "hint empty" }, "This recording has no time series."));
     this.element.append(h("figure", {}, h("figcaption", {}, "Collisions of two objects"), this.events));
     this.update();
   }
 
-  private add(title: string, columns: string[], scale: number): void {
-    if (columns.length === 0) return;
+  private add(form: PlotForm): void {
+    const { title, columns } = form;
     const ink = colourOf("--ink-soft");
-    const stroke = (name: string, i: number) => (name === "total_seconds" ? colourOf("--ink") : LINES[i % LINES.length]!);
+    const lines = linesOf(this.model, form, colourOf("--ink"));
     const grid = colourOf("--line");
     const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: `${remPixels() * 0.75}px system-ui` };
-    const save = h("button", { type: "button", class: "link", "aria-label": `Save ${title} as SVG`, onclick: () => this.save(title, columns, scale) }, "SVG");
+    const save = h("button", { type: "button", class: "link", "aria-label": `Save ${title} as SVG`, onclick: () => this.save(form) }, "SVG");
     const holder = h("figure", { "aria-label": title }, h("figcaption", {}, title, " ", save));
     const options: uPlot.Options = {
       width: Math.max(120, this.element.clientWidth),
@@ -73,7 +61,7 @@ export class Plots {
       legend: { live: false },
       cursor: { points: { show: false }, drag: { x: false, y: false } },
       axes: [{ ...axis, size: 1.75 * remPixels() }, { ...axis, size: 3.5 * remPixels() }],
-      series: [{ label: "frame" }, ...columns.map((name, i) => ({ label: labelOf(name), stroke: stroke(name, i), width: 1.5, points: { show: false } }))],
+      series: [{ label: "frame" }, ...lines.map(({ label, colour }) => ({ label, stroke: colour, width: 1.5, points: { show: false } }))],
       hooks: { draw: [(plot) => this.drawCursor(plot)] },
     };
     const empty = [[], ...columns.map(() => [])] as unknown as uPlot.AlignedData;
@@ -83,7 +71,7 @@ export class Plots {
       if (at !== null && at !== undefined) this.seek(this.model.history.frames[at]!);
     });
     this.element.append(holder);
-    this.plots.push({ title, columns, scale, plot });
+    this.plots.push({ form, plot });
   }
 
   private drawCursor(plot: uPlot): void {
@@ -115,22 +103,12 @@ export class Plots {
     this.events.replaceChildren(
       ...EVENT_KINDS.flatMap((kind) => [h("dt", {}, EVENT_LABELS[kind]), h("dd", {}, this.countsOf(kind))]),
     );
-    for (const { columns, scale, plot } of this.plots) {
-      plot.setData([frames, ...columns.map((name) => this.values(name, scale))]);
-    }
-  }
-
-  private values(name: string, scale: number): number[] {
-    const column = this.model.history.column(name)!;
-    // The total of the library is that of the detection; the plot also has the time of the motion.
-    const motion = name === "total_seconds" ? this.model.history.column("motion_seconds") : null;
-    return scale === 1 ? column : column.map((value, i) => (value + (motion?.[i] ?? 0)) * scale);
+    for (const { form, plot } of this.plots) plot.setData([frames, ...linesOf(this.model, form).map(({ values }) => values)]);
   }
 
   /** On white, whatever the theme is. */
-  private save(title: string, columns: string[], scale: number): void {
-    const lines = columns.map((name, i) => ({ label: labelOf(name), colour: name === "total_seconds" ? "#1b2027" : LINES[i % LINES.length]!, values: this.values(name, scale) }));
-    const svg = plotSvg(title, this.model.scene!.frames === null ? "step" : "frame", this.model.history.frames, lines);
+  private save(form: PlotForm): void {
+    const svg = plotSvg(form.title, nounOf(this.model), this.model.history.frames, linesOf(this.model, form));
     download(new Blob([svg], { type: "image/svg+xml" }), `supple-plot-${stamp()}.svg`);
   }
 

@@ -22,6 +22,8 @@ const SLOW_TURNS = 30;
 const SLOW_MILLISECONDS = 40;
 /** How far objects within a border may move and stay in the first view, relative to their size together. */
 const ROOM = 0.25;
+/** The first view has the whole border when it is at most so large, relative to the objects: they go everywhere in it. */
+const NEAR_BORDER = 4;
 
 /** Behind the objects of a picture; `theme` is that of the page, with its floor and axes. */
 export type Background = "theme" | "white" | "transparent";
@@ -274,8 +276,8 @@ export class SceneView {
   }
 
   /**
-   * Shows what moves with some room to move, but not more than the border, and the objects around it that are not
-   * much larger.
+   * Shows what moves with the border, or in a large one with some room to move, and the objects around it that are
+   * not much larger.
    */
   private firstFrame(): void {
     this.hasFramed = true;
@@ -287,9 +289,10 @@ export class SceneView {
     const size = ({ lower, upper }: Bounds) => Math.hypot(...upper.map((x, axis) => x - lower[axis]!));
     const shown = boundsOfAll(objects.filter((object) => !moving || !object.isStatic || size(boundsOf(object) ?? moving) < 3 * size(moving)));
     if (!shown) return;
+    const isNear = border && size({ lower: border[0], upper: border[1] }) <= NEAR_BORDER * size(shown);
+    const room = isNear ? Infinity : border ? ROOM * size(shown) : 0;
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((axis) => {
       const isUpper = (i >> axis) & 1;
-      const room = border ? ROOM * size(shown) : 0;
       return isUpper ? Math.max(shown.upper[axis]!, Math.min(shown.upper[axis]! + room, border?.[1][axis] ?? Infinity)) : Math.min(shown.lower[axis]!, Math.max(shown.lower[axis]! - room, border?.[0][axis] ?? -Infinity));
     }));
     const center = new THREE.Vector3().fromArray(corners[0]!).add(new THREE.Vector3().fromArray(corners[7]!)).multiplyScalar(0.5);
