@@ -97,7 +97,8 @@ export class Stage {
     this.supple = supple;
     this.browser = browser;
     this.options = { ...options, colorScheme: theme };
-    this.window = SIZES[size] ?? { viewport: { width: 1280, height: 800 } };
+    this.window = { ...(SIZES[size] ?? { viewport: { width: 1280, height: 800 } }) };
+    if (browser.browserType().name() !== "chromium") delete this.window.hasTouch;  // the harness has no finger there
     this.folder = mkdtempSync(join(tmpdir(), "supple-e2e-"));
     this.programs = [];
     this.contexts = [];
