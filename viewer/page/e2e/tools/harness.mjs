@@ -98,7 +98,7 @@ export class Stage {
     this.browser = browser;
     this.options = { ...options, colorScheme: theme };
     this.window = { ...(SIZES[size] ?? { viewport: { width: 1280, height: 800 } }) };
-    if (browser.browserType().name() !== "chromium") delete this.window.hasTouch;  // the harness has no finger there
+    if (browser?.browserType().name() !== "chromium") delete this.window.hasTouch;  // the harness has no finger there
     this.folder = mkdtempSync(join(tmpdir(), "supple-e2e-"));
     this.programs = [];
     this.contexts = [];
