@@ -235,7 +235,8 @@ export const seenTriangle = (page, object, least = -Infinity) =>
     for (let triangle = 0; triangle < triangles; ++triangle) {
       const middle = supple.centroid(object, triangle);
       if (middle[1] < least) continue;
-      const at = supple.project(middle);
+      const { x, y } = supple.project(middle);
+      const at = { x: Math.round(x), y: Math.round(y) };  // events of the pointer have whole pixels in Firefox
       const hit = supple.pickAt(at.x, at.y);
       if (hit?.object === object && hit.triangle === triangle) return { ...at, object, triangle, vertex: hit.vertex };
     }
