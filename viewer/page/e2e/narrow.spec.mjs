@@ -1,4 +1,4 @@
-// Small windows, zoom, large fonts, touch, and accessibility.
+// Small windows, zoom, large fonts, touch, accessibility, names and icons.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -122,6 +122,49 @@ async function textIsLargeEnough(stage) {
   }
 }
 
+async function everythingHasAName(stage) {
+  const { page } = await stage.view(nine);
+  for (const tab of ["Inspect", "Contacts", "Plots", "Settings"]) {
+    await page.getByRole("tab", { name: tab }).click();
+    const nameless = await page.evaluate(() =>
+      [...document.querySelectorAll("button, input, select, canvas.view, [role=grid]")]
+        .filter((element) => element.offsetParent !== null)
+        .filter((element) => !(element.getAttribute("aria-label") || element.getAttribute("aria-labelledby") || element.textContent.trim() || element.labels?.length))
+        .map((element) => element.outerHTML.slice(0, 120)),
+    );
+    assert.deepEqual(nameless, []);
+  }
+}
+
+/** Also what a button shows after it was pressed. */
+async function noTwoIconsAreAlike(stage) {
+  const { page } = await stage.view(nine);
+  await pause(page);
+  const drawn = new Map();
+  const look = async () => {
+    const icons = await page.evaluate(async () => {
+      const pixels = async (svg) => {
+        const image = Object.assign(new Image(), { src: `data:image/svg+xml,${encodeURIComponent(svg.outerHTML.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"'))}` });
+        await image.decode();
+        const context = new OffscreenCanvas(32, 32).getContext("2d");
+        context.drawImage(image, 0, 0, 32, 32);
+        return [...context.getImageData(0, 0, 32, 32).data].filter((_, i) => i % 4 === 3);
+      };
+      return Promise.all([...document.querySelectorAll("button:has(svg)")].map(async (button) => [button.getAttribute("aria-label"), await pixels(button.querySelector("svg"))]));
+    });
+    for (const [name, pixels] of icons) drawn.set(name, pixels);
+  };
+  await look();
+  assert.ok(drawn.size > 15, `${drawn.size} buttons have icons`);
+  await page.getByRole("button", { name: "Orthographic" }).click();
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await page.getByRole("button", { name: "Pause" }).waitFor();
+  await look();
+  const ink = (pixels) => pixels.reduce((sum, alpha) => sum + alpha, 0);
+  const pairs = [...drawn].flatMap(([a, one], i) => [...drawn].slice(i + 1).map(([b, other]) => ({ names: `${a} and ${b}`, apart: one.reduce((sum, alpha, k) => sum + Math.abs(alpha - other[k]), 0) / Math.max(ink(one), ink(other)) })));
+  for (const { names, apart } of pairs) assert.ok(apart > 0.4, `the icons of ${names} differ in ${Math.round(100 * apart)} % of their ink`);
+}
+
 async function accessible(stage) {
   for (const colorScheme of ["dark", "light"]) {
     for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 800 }]) {
@@ -171,5 +214,7 @@ export const tests = [
   ["everything is reached at 390 pixels by keys", byKeys],
   ["everything is reached with a font of 200 %", byFont],
   ["text is large enough", textIsLargeEnough],
+  ["everything has a name", everythingHasAName],
+  ["no two icons are alike", noTwoIconsAreAlike],
   ["axe has no serious findings", accessible],
 ];

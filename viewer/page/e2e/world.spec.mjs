@@ -66,8 +66,8 @@ async function firstViewShowsWhatMoves(stage) {
   const moving = `motion = { kind = "sway", amplitude = 0.01, wavelength = 1.5, period = 1 }`;
   const page = await open(stage, `[scene]\nbounds = [[-50, -50, -50], [50, 50, 50]]\n${ball(moving)}[[object]]\nmodel = "box"\nscale = 20\ntranslate = [0, -25, 0]\nstatic = true\n`);
   const { high, view } = await page.evaluate(() => {
-    const { height } = document.querySelector("canvas.view").getBoundingClientRect();
-    return { high: supple.project([0, -1, 0].map((x, i) => x - supple.model.scene.center[i])).y - supple.project([0, 1, 0].map((x, i) => x - supple.model.scene.center[i])).y, view: height };
+    const { width, height } = document.querySelector("canvas.view").getBoundingClientRect();
+    return { high: supple.project([0, -1, 0].map((x, i) => x - supple.model.scene.center[i])).y - supple.project([0, 1, 0].map((x, i) => x - supple.model.scene.center[i])).y, view: Math.min(width, height) };
   });
   assert.ok(high > 0.2 * view && high < view, `the ball is ${high} of ${view} pixels high`);
   // Objects that drift through a room stay in view, because the whole room is.

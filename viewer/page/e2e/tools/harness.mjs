@@ -97,7 +97,8 @@ export class Stage {
     this.supple = supple;
     this.browser = browser;
     this.options = { ...options, colorScheme: theme };
-    this.window = SIZES[size] ?? { viewport: { width: 1280, height: 800 } };
+    this.window = { ...(SIZES[size] ?? { viewport: { width: 1280, height: 800 } }) };
+    if (browser?.browserType().name() !== "chromium") delete this.window.hasTouch;  // the harness has no finger there
     this.folder = mkdtempSync(join(tmpdir(), "supple-e2e-"));
     this.programs = [];
     this.contexts = [];
@@ -234,7 +235,8 @@ export const seenTriangle = (page, object, least = -Infinity) =>
     for (let triangle = 0; triangle < triangles; ++triangle) {
       const middle = supple.centroid(object, triangle);
       if (middle[1] < least) continue;
-      const at = supple.project(middle);
+      const { x, y } = supple.project(middle);
+      const at = { x: Math.round(x), y: Math.round(y) };  // events of the pointer have whole pixels in Firefox
       const hit = supple.pickAt(at.x, at.y);
       if (hit?.object === object && hit.triangle === triangle) return { ...at, object, triangle, vertex: hit.vertex };
     }

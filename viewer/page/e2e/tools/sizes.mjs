@@ -44,26 +44,32 @@ async function turnTo(page, name) {
   if (open === null || open === name) return;
   if (open) await press(page, `#panel-${open} > .drawer.close`);
   if (name) await press(page, `header [aria-controls="panel-${name}"]`);
-  await page.evaluate(async () => {
-    for (let i = 0; i < 3; ++i) await new Promise((done) => requestAnimationFrame(done));
-  });
+  await frames(page, 3);
 }
+
+const frames = (page, count) =>
+  page.evaluate(async (count) => {
+    for (let i = 0; i < count; ++i) await new Promise((done) => requestAnimationFrame(done));
+  }, count);
 
 const isSeen = (locator) => original.isVisible.call(locator.first());
 
 /** The closed drawer that has the element. Both are laid out for that, unseen, so that nothing changes for the page. */
 async function drawerOf(locator) {
-  const layOut = (isOn) =>
-    locator.page().evaluate(async (isOn) => {
-      for (const panel of document.querySelectorAll(".panel"))
-        for (const [name, value] of [["display", "flex"], ["opacity", "0"], ["pointer-events", "none"]])
-          isOn ? panel.style.setProperty(name, value, "important") : panel.style.removeProperty(name);
-      for (let i = 0; isOn && i < 2; ++i) await new Promise((done) => requestAnimationFrame(done));  // lists fill their rows
-    }, isOn);
-  await layOut(true);
-  const panel = await original.evaluateAll.call(locator, (found) => found.find((element) => element.checkVisibility())?.closest(".panel")?.id);
-  await layOut(false);
-  return panel?.replace("panel-", "");
+  const page = locator.page();
+  const find = () => original.evaluateAll.call(locator, (found) => found.find((element) => element.checkVisibility())?.closest(".panel")?.id.replace("panel-", ""));
+  await page.evaluate(() => {
+    for (const { style } of document.querySelectorAll(".panel")) for (const [name, value] of [["display", "flex"], ["opacity", "0"], ["pointer-events", "none"]]) style.setProperty(name, value, "important");
+  });
+  let name = await find();
+  if (!name) {
+    await frames(page, 2);  // long lists fill their rows
+    name = await find();
+  }
+  await page.evaluate(() => {
+    for (const panel of document.querySelectorAll(".panel")) panel.removeAttribute("style");
+  });
+  return name;
 }
 
 /** Looks for an element in the page and in its drawers. Returns whether it is visible now. */
