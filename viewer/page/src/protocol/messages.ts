@@ -121,6 +121,8 @@ export interface FrameText {
   section: [number, number] | null;
   /** The first and the last step that can be shown. */
   range: [number, number];
+  /** While the session measures pins in other frames of a recording: how many are measured, and how many there are. */
+  pin_frames: [number, number] | null;
   /** A kept step of a simulation or a program, not the newest. */
   past: boolean;
   /** The key of the field whose values the frame has. */

@@ -15,6 +15,7 @@ function frameText(json: Record<string, unknown>): FrameText {
   need(f.field === null || isText(f.field), "field");
   f.octree_levels ??= [];
   f.section ??= null;
+  f.pin_frames ??= null;
   f.range ??= [f.step, f.step];
   f.past ??= false;
   f.omitted ??= {};
@@ -23,6 +24,7 @@ function frameText(json: Record<string, unknown>): FrameText {
   const isRange = (value: unknown) => Array.isArray(value) && value.length === 2 && value.every(isCount);
   need(isRange(f.range), "range");
   need(f.section === null || isRange(f.section), "section");
+  need(f.pin_frames === null || isRange(f.pin_frames), "pin_frames");
   need(typeof f.omitted === "object" && Object.values(f.omitted).every(isCount), "omitted");
   need(Array.isArray(f.untested) && f.untested.every((entry) => isText(entry?.kind) && isText(entry?.reason)), "untested");
   return f;
