@@ -20,8 +20,9 @@ int main(int argc, char** argv) {
   const supple::ObjectId passing = scene.add(ball, {.name = "other ball", .solid = true});
 
   try {
-    supple::viewer::View view = supple::viewer::attach(scene, {.title = "two balls", .time_step = 0.01});
-    std::printf("Open %s\n", view.url().c_str());
+    supple::viewer::View view =
+        supple::viewer::attach(scene, {.title = "two balls", .time_step = 0.01, .spectators = true});
+    std::printf("Open %s\nWatch %s\n", view.url().c_str(), view.watching_url().c_str());
     std::fflush(stdout);
     std::vector<double> heights(ball.positions.size());  // numbers of your own, one for each vertex
     for (int step = 0; step < steps; ++step) {

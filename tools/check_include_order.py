@@ -33,7 +33,7 @@ PROGRAMS = ["viewer/session", "viewer/export", "viewer/view_file", "viewer/serve
 # Folders of small programs that do not depend on each other.
 LISTS = ["examples"]
 # Folders of the viewer that others may include although they are not public: "session/scene_view.hpp".
-SHARED = {"viewer/server": ["session"], "viewer/view_file": ["session", "export"], "viewer/attach": ["session", "export", "server"], "cli": ["session", "export", "view_file", "server"], "experiments": ["session"]}
+SHARED = {"viewer/server": ["session"], "viewer/view_file": ["session", "export"], "viewer/attach": ["session", "export", "view_file", "server"], "cli": ["session", "export", "view_file", "server"], "experiments": ["session"]}
 # Programs that are built on the parts of another one; a benchmark divides space as a distributed scene does.
 BUILT_ON = {"experiments": "cli", "benchmarks": "distributed/src"}
 PUBLIC = ["include", "viewer/include"] + [f"{name}/include" for name in COMPONENTS]

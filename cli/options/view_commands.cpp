@@ -12,6 +12,7 @@
 #include "options/help_footers.hpp"
 #include "options/option_groups.hpp"
 #include "session/pins/pin_values.hpp"
+#include "session/program/attach_descriptions.hpp"
 #include "supple/simulation_descriptions.hpp"
 
 namespace supple::cli {
@@ -223,11 +224,8 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
                     "new secret in each run)")
                  ->type_name("FILE")),
        is_served, no_export});
-  dependences.push_back(
-      {group(app->add_flag("--spectators", options.has_spectators,
-                           "Print a second address: whoever opens it sees what the page shows of the scene, "
-                           "with a camera of their own, and controls nothing")),
-       is_served, no_export});
+  dependences.push_back({group(app->add_flag("--spectators", options.has_spectators, viewer::spectators_doc)),
+                         is_served, no_export});
   dependences.push_back({group(app->add_flag_callback(
                              "--no-open", [&] { options.open_browser = false; },
                              "Print the address without opening a browser")),

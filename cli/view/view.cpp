@@ -74,8 +74,7 @@ void warn_of_others(const ViewOptions& options) {
 }
 
 int serve(viewer::SceneView show, const ViewOptions& options, std::string_view page) {
-  const std::string watching_page =
-      options.has_spectators ? viewer::page_with_json(page, "supple-spectator", "true") : "";
+  const std::string watching_page = options.has_spectators ? viewer::page_of_spectators(page) : "";
   viewer::Server server(
       viewer::Session(std::move(show), options.budget),
       {.address = options.address,

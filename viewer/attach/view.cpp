@@ -23,6 +23,7 @@
 #include "session/session.hpp"
 #include "supple/error.hpp"
 #include "supple/viewer.hpp"
+#include "view_file/view_file.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -57,14 +58,17 @@ class View::Implementation {
   Implementation(const Scene& scene, const AttachOptions& options)
       : scene_(&scene),
         gate_(gate_of(scene, options, [this] { wake(); })),
+        watching_page_(options.spectators ? page_of_spectators(embedded_page()) : ""),
         server_(std::make_unique<Server>(
             Session(view_of_program(scene, gate_, options.title.empty() ? "my program" : options.title),
                     {.history_bytes = options.history_bytes}),
             ServerOptions{.address = options.address,
                           .port = options.port,
                           .page = embedded_page(),
+                          .watching_page = watching_page_,
                           .token = options.token_file.empty() ? "" : token_of_file(options.token_file)})),
         url_(server_->url()),
+        watching_url_(server_->watching_url()),
         awake_(server_.get()),
         network_([this] { serve(); }) {
     if (options.open_browser) visit_.emplace(url_);
@@ -75,6 +79,7 @@ class View::Implementation {
 
   const std::shared_ptr<Gate>& gate() const { return gate_; }
   const std::string& url() const { return url_; }
+  const std::string& watching_url() const { return watching_url_; }
   const Scene& scene() const { return *scene_; }
   void wait(const CallLimits& limits) { gate_->wait(*scene_, limits); }
 
@@ -108,8 +113,9 @@ class View::Implementation {
 
   const Scene* scene_;
   std::shared_ptr<Gate> gate_;
+  std::string watching_page_;
   std::unique_ptr<Server> server_;
-  std::string url_;
+  std::string url_, watching_url_;
   std::optional<BrowserVisit> visit_;
   std::mutex waking_;
   Server* awake_;  ///< null when the session has ended; guarded by the mutex
@@ -125,6 +131,9 @@ View::~View() = default;
 
 const std::string& View::url() const {
   return implementation_->url();
+}
+const std::string& View::watching_url() const {
+  return implementation_->watching_url();
 }
 std::uint64_t View::step_count() const {
   return implementation_->gate()->state().step_count;

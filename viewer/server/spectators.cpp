@@ -92,8 +92,10 @@ void Spectators::relay(const Message& message) {
 void Spectators::take_frame(const Bytes& message) {
   frame_ = message;
   visit_sections(*message, [&](const Section& section) {
-    if (section.tag == static_cast<std::uint32_t>(Tag::positions))
-      positions_[section.object] = {message, section.data, section.count};
+    if (section.tag != static_cast<std::uint32_t>(Tag::positions)) return;
+    Positions& positions = positions_[section.object];
+    positions.data.assign(section.data.begin(), section.data.end());
+    positions.count = section.count;
   });
 }
 

@@ -5,16 +5,15 @@
 #include <list>
 #include <map>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "page.hpp"
 
 namespace supple::viewer {
 
-/// Pages that watch what the controlling page gets. They have no commands. A message is never kept waiting
-/// for them: one that is still sending misses frames, and then gets all positions. All calls on the network
-/// thread.
+/// Pages that watch what the controlling page gets. They have no commands. Nothing waits for them, and no
+/// message is queued: each is sent one message at a time, misses the frames that come meanwhile, and then
+/// gets the newest one with all positions. All calls on the network thread.
 class Spectators {
  public:
   static constexpr std::size_t most = 32;
@@ -44,9 +43,9 @@ class Spectators {
   std::chrono::milliseconds patience_;
   std::list<Watcher> watchers_;
   Bytes scene_, series_, frame_;  ///< the last ones
+  /// Copied, so that no earlier message is kept for an object that came to rest.
   struct Positions {
-    Bytes message{};  ///< that has the section
-    std::span<const std::byte> data{};
+    std::vector<std::byte> data{};
     std::uint32_t count = 0;
   };
   std::map<std::uint32_t, Positions> positions_;  ///< the newest ones, by object

@@ -1,5 +1,6 @@
 #include "session.hpp"
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <utility>
@@ -9,6 +10,14 @@
 #include "session_implementation.hpp"
 
 namespace supple::viewer {
+namespace {
+
+/// How often the page gets the rows of pins of frames that are not shown.
+constexpr double survey_interval = 0.25;
+/// Rows of pins that wait for a page that takes no frames.
+constexpr std::size_t most_survey_rows = 4096;
+
+}  // namespace
 
 void Session::Implementation::greet() {
   is_greeted_ = true;
@@ -16,6 +25,7 @@ void Session::Implementation::greet() {
   has_news_ = true;
   packer_.forget();
   pins_.set({});
+  survey_.clear();
   credit_ = 0;
   replies_.clear();
   layers_ = {};
@@ -57,7 +67,29 @@ double Session::Implementation::advance(double seconds) {
     return 0;
   }
   has_news_ = has_news_ || outcome.changed;
-  return outcome.wait;
+  const bool is_free = !outcome.changed && outcome.wait > 0;
+  return is_free && survey_pins(seconds) ? 0 : outcome.wait;
+}
+
+/// While a recording is not read for the page, measures the pins in one of its other frames. Returns false
+/// when there is nothing to do.
+bool Session::Implementation::survey_pins(double seconds) {
+  const RecordingSource* const recording = stage_->recording();
+  if (recording == nullptr || !survey_.progress(*recording)) return false;
+  survey_seconds_ += seconds;
+  const bool is_full = pins_.size() >= most_survey_rows;
+  if (!is_full) {
+    if (const auto failure = failure_of([&] { survey_.measure_next(scene(), *recording, pins_); })) {
+      survey_.stop();
+      replies_.id.reset();
+      fail("pins have no values of some frames: " + failure->message);
+    }
+  }
+  if (is_full || survey_seconds_ >= survey_interval || !survey_.progress(*recording)) {
+    survey_seconds_ = 0;
+    has_news_ = true;
+  }
+  return !is_full;
 }
 
 /// Takes what a step, or a way to or from the past, has changed.
@@ -147,6 +179,7 @@ bool Session::Implementation::pack_frame(MessageWriter& message) {
                   is_past_};
   frame.has_path = !is_past_ || stage_->past()->has_path();
   frame.is_recorded = stage_->recording() != nullptr;
+  if (frame.is_recorded) frame.pin_frames = survey_.progress(*stage_->recording());
   const auto failure = failure_of([&] {
     packer_.pack(frame, message);
     field_.pack(*stage_, message);

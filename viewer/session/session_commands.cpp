@@ -196,11 +196,16 @@ void Session::Implementation::set(Arguments& arguments) {
   settings.restart == settings_.restart ? change(settings) : restart(settings);
 }
 
+void Session::Implementation::replace_stage(std::unique_ptr<Stage> stage) {
+  survey_.clear();
+  stage_ = std::move(stage);
+}
+
 /// Changes how contacts are found. The objects stay where they are: a simulation keeps its state, and a
 /// recording its frame. On failure nothing changes.
 void Session::Implementation::change(const Settings& settings) {
   if (stage_->recording() != nullptr)
-    stage_ = make_stage(settings, stage_->recording()->frame());
+    replace_stage(make_stage(settings, stage_->recording()->frame()));
   else
     stage_->set_detection(show_, settings);
   has_other_options_ = stage_->program() != nullptr;
@@ -218,7 +223,7 @@ void Session::Implementation::follow_program() {
   if (stage_->past() == nullptr) {
     if (auto changed = source.changed_view()) {
       show_ = std::move(*changed);
-      stage_ = make_stage(settings_);
+      replace_stage(make_stage(settings_));
       stage_->program()->advance();
       field_.restart();
       keep_objects(layers_, scene().objects.size());
@@ -232,7 +237,7 @@ void Session::Implementation::follow_program() {
 
 /// Starts again at the first step. On failure nothing changes.
 void Session::Implementation::restart(const Settings& settings) {
-  stage_ = make_stage(settings);
+  replace_stage(make_stage(settings));
   is_past_ = false;
   settings_ = settings;
   player_.restart();
@@ -333,6 +338,7 @@ void Session::Implementation::pins(Arguments& arguments) {
   auto pins = read_pins(scene(), stage_->source(), arguments);
   if (!pins) return;
   if (ProgramSource* const source = stage_->program()) source->program().set_pins(*pins);
+  if (stage_->recording() != nullptr) survey_.set(*pins);
   pins_.set(std::move(*pins));
   if (stage_->program() != nullptr && stage_->is_open())
     pins_.measure(stage_->source().scene(), stage_->source().step(), stage_->source().time());

@@ -16,6 +16,7 @@
 #include "messages/message.hpp"
 #include "messages/scene_message.hpp"
 #include "pins/pin_rows.hpp"
+#include "pins/pin_survey.hpp"
 #include "replies.hpp"
 #include "session.hpp"
 #include "settings.hpp"
@@ -85,6 +86,7 @@ class Session::Implementation {
   std::unique_ptr<Stage> make_stage(const Settings& settings, std::uint64_t frame = 0) const {
     return std::make_unique<Stage>(show_, settings, history_bytes_, frame);
   }
+  void replace_stage(std::unique_ptr<Stage> stage);
   void take_state();
   void look_at_present();
   void restart(const Settings& settings);
@@ -97,6 +99,7 @@ class Session::Implementation {
   void fail(const std::string& message, bool fatal = false, std::span<const std::string> layers = {});
   bool pack_frame(MessageWriter& message);
   void measure_pins();
+  bool survey_pins(double seconds);
 
   SceneView show_;
   Settings settings_;
@@ -119,6 +122,8 @@ class Session::Implementation {
   std::vector<FieldForm> fields_;  // that the last scene message offered
   FieldMaker field_;
   PinRows pins_;
+  PinSurvey survey_;           // of a recording
+  double survey_seconds_ = 0;  // since its rows were sent
 };
 
 }  // namespace supple::viewer

@@ -189,4 +189,8 @@ std::string page_with_json(std::string_view page, std::string_view id, std::stri
   return whole;
 }
 
+std::string page_of_spectators(std::string_view page) {
+  return page_with_json(page, "supple-spectator", "true");
+}
+
 }  // namespace supple::viewer

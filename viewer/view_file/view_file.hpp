@@ -17,4 +17,7 @@ std::string read_view(const std::filesystem::path& path);
 /// reads when it opens. Throws `Error` when the page has no place for it.
 std::string page_with_json(std::string_view page, std::string_view id, std::string_view json);
 
+/// The page for those who may only watch.
+std::string page_of_spectators(std::string_view page);
+
 }  // namespace supple::viewer

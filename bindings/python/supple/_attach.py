@@ -32,6 +32,11 @@ class View:
         return str(self._core.url())
 
     @property
+    def watching_url(self) -> str:
+        """The address for those who may only watch, with another secret token; empty without `spectators`."""
+        return str(self._core.watching_url())
+
+    @property
     def steps(self) -> int:
         """Steps since `attach`: calls of `detect` and `step`."""
         return int(self._core.step_count())
@@ -108,7 +113,8 @@ def attach(
 
     `open` opens the page in the browser, if there is a screen. Options: `max_slowdown`, the share of the
     program's time that frames may take (0.03), `time_step`, `title`, `address`, `port`, `token_file`,
-    `wait_for_page`, and the events of `View.set_breaks` with their `objects`. `view` makes a page of the
+    `wait_for_page`, `history_bytes`, `spectators`, which makes `View.watching_url` for those who may only watch,
+    and the events of `View.set_breaks` with their `objects`. `view` makes a page of the
     present state instead, which needs no running program.
     """
     title = os.path.basename(sys.argv[0]) or "Python"

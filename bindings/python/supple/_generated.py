@@ -829,6 +829,8 @@ CONTRACTS = {
         'The address of the page, with a secret token.',
     'viewer::View::wait':
         'Shows the last step until the page continues the program, the view is closed, or a stop is requested. The scene must exist, and must not have been moved.',
+    'viewer::View::watching_url':
+        'The address for those who may only watch, with another secret token; empty without `AttachOptions.spectators`.',
     'viewer::attach':
         "Shows a scene in a page while the program runs: from now on, `detect` shows its result. Replaces the observer of the scene. The page can pause the program in `detect`, take single steps, and set breaks. The page reads the user's scene itself, only while `detect` waits. Threads: one for the session, one for the network. Throws `Error` when an option is out of range, when the scene does not detect the kind of contacts that a break needs, when the address is not available, and when the library was built without SUPPLE_BUILD_VIEWER.",
     'visit_field':

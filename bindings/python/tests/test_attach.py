@@ -230,6 +230,26 @@ def test_simulation():
         assert view.steps == 3
 
 
+def test_spectators_see_the_program_and_control_nothing(attached):
+    assert attached[2].watching_url == ""
+    scene, ball = falling_ball()
+    with supple.attach(scene, open=False, max_slowdown=100, spectators=True) as view:
+        assert view.watching_url.startswith("http://") and view.watching_url != view.url
+        page, spectator = Page(view.url), Page(view.watching_url)
+        page.ask(do="pause")
+        thread = in_thread(fall, scene, ball, 3)
+        page.until(lambda kind, text: kind == FRAME and text["step"] == 0)
+        spectator.say(do="play")
+        assert spectator.read()[0] == SCENE
+        assert spectator.read()[1]["step"] == 0
+        page.say(do="step")
+        page.until(lambda kind, text: kind == FRAME and text["step"] == 1)
+        assert view.steps == 2, "the spectator has continued nothing"
+        page.say(do="play")
+        thread.join(60)
+        assert not thread.is_alive()
+
+
 def test_close_frees_the_port_and_later_steps_are_not_shown(attached):
     scene, ball, view = attached
     assert view.url in repr(view) and view.url.split("?")[0] in view._repr_html_()

@@ -47,8 +47,9 @@ class Attach : public testing::Test {
       }
     });
   }
-  PageClient connect() {
-    const std::string& url = view_->url();
+  PageClient connect() { return connect(view_->url()); }
+  PageClient watch() { return connect(view_->watching_url()); }
+  static PageClient connect(const std::string& url) {
     const std::size_t colon = url.find(':', 6), slash = url.find('/', colon);
     const auto port = static_cast<std::uint16_t>(std::stoi(url.substr(colon + 1, slash - colon - 1)));
     return PageClient(port, url.substr(url.find('=') + 1));
@@ -116,6 +117,35 @@ TEST_F(Attach, CloseEndsAPauseAndFreesThePort) {
   EXPECT_EQ(page.receive_close(), 4002);
   EXPECT_TRUE(goes_on());
   EXPECT_THROW(connect(), boost::system::system_error);
+}
+
+TEST_F(Attach, SpectatorsSeeTheProgramAndControlNothing) {
+  if (!start({.max_slowdown = 1000, .spectators = true})) GTEST_SKIP();
+  PageClient page = connect(), spectator = watch(), silent = watch();
+  const ViewerMessage scene = page.receive(Kind::scene);
+  page.send(R"({"do": "pause", "id": 1})");
+  page.receive(Kind::answer);
+  run();
+  frame(page);
+  EXPECT_EQ(spectator.receive().json, scene.json);
+  EXPECT_EQ(spectator.receive().json["step"], 0);
+  spectator.send(R"({"do": "play"})");
+  spectator.send(R"({"do": "step", "count": 100})");
+  for (int step = 1; step < 5; ++step) {
+    page.send(R"({"do": "step"})");
+    const ViewerMessage seen = frame(page);
+    EXPECT_EQ(seen.json["step"], step) << "a spectator has taken steps";
+    ViewerMessage same = spectator.receive(Kind::frame);
+    while (same.json["step"] != step) same = spectator.receive(Kind::frame);
+    EXPECT_EQ(same.section(32, 0).data, seen.section(32, 0).data);
+  }
+  view_->close();
+  EXPECT_EQ(spectator.receive_close(), 4002);
+}
+
+TEST_F(Attach, WithoutSpectatorsThereIsNoSecondAddress) {
+  if (!start()) GTEST_SKIP();
+  EXPECT_EQ(view_->watching_url(), "");
 }
 
 TEST_F(Attach, TokenFileKeepsTheAddress) {

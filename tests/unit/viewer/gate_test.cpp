@@ -3,91 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <map>
-#include <memory>
-#include <optional>
-#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "session/program/program_source.hpp"
-#include "support/eventually.hpp"
-#include "support/viewer_page.hpp"
+#include "unit/viewer/watched_program.hpp"
 
 namespace supple::viewer {
 namespace {
-
-using namespace std::chrono_literals;
-
-/// A program with two balls, of which one moves to the other by a tenth in each step, and a page that watches
-/// it. The program runs in a thread of its own, the session in that of the test.
-class WatchedProgram : public testing::Test {
- protected:
-  ~WatchedProgram() override {
-    if (gate_) gate_->close();
-    while (is_running_) turn();
-    if (program_.joinable()) program_.join();
-  }
-
-  void attach(AttachOptions options = {}) {
-    gate_ =
-        std::make_shared<Gate>(options, Gate::Surroundings{[this] { return seconds_.load(); }, [] {}, 1h});
-    scene_.set_observer([gate = gate_](const Scene& scene, const DetectRequest& request) {
-      gate->pass(scene, request);
-      EXPECT_FALSE(gate->enter()) << "the scene is closed outside of the gate";
-    });
-    page_.emplace(view_of_program(scene_, gate_, "program"));
-  }
-  /// The program takes steps in another thread.
-  void run(int steps, const DetectRequest& request = {}) {
-    if (program_.joinable()) program_.join();
-    is_running_ = true;
-    program_ = std::thread([this, steps, request] {
-      for (int i = 0; i < steps; ++i) {
-        scene_.translate(right_, {-0.1, 0, 0});
-        scene_.detect(request);
-        ++steps_taken_;
-      }
-      is_running_ = false;
-    });
-  }
-  /// The session works once; keeps its messages.
-  void turn() {
-    page_->session.advance(0);
-    for (ViewerMessage& message : page_->drain()) {
-      if (message.kind == ViewerMessage::scene) scenes_.push_back(message);
-      if (message.kind == ViewerMessage::frame) frames_.push_back(message);
-      if (message.kind == ViewerMessage::answer) answers_.push_back(message);
-      if (message.kind == ViewerMessage::failure) failures_.push_back(message);
-    }
-  }
-  bool until(const std::function<bool()>& holds) {
-    return eventually([&] {
-      turn();
-      return holds();
-    });
-  }
-  void say(const Json& command) { page_->say(command); }
-  void give_credit() { say({{"do", "credit"}, {"frames", 8}}); }
-  std::uint64_t last_step() const { return frames_.back().json["step"].get<std::uint64_t>(); }
-
-  Scene scene_;
-  ObjectId left_ = scene_.add(test_ball("left", {}).mesh, {.name = "left"});
-  ObjectId right_ = scene_.add(test_ball("right", {3, 0, 0}).mesh, {.name = "right"});
-  std::atomic<double> seconds_ = 0;
-  std::shared_ptr<Gate> gate_;
-  std::optional<TestPage> page_;
-  std::vector<ViewerMessage> scenes_, frames_, answers_, failures_;
-  std::atomic<int> steps_taken_ = 0;
-  std::atomic<bool> is_running_ = false;
-  std::thread program_;
-};
 
 TEST_F(WatchedProgram, DoesNotWaitForAPageWithoutCredit) {
   attach();
@@ -186,26 +112,6 @@ TEST_F(WatchedProgram, BudgetLimitsFramesAndStatisticsHaveAllSteps) {
   EXPECT_EQ(rows, 6u) << "of steps without a frame, too";
 }
 
-TEST_F(WatchedProgram, PauseStepAndContinue) {
-  attach();
-  turn();
-  give_credit();
-  say({{"do", "pause"}});
-  turn();
-  run(10);
-  ASSERT_TRUE(until([&] { return !frames_.empty(); }));
-  EXPECT_EQ(frames_[0].json["playing"], false);
-  EXPECT_EQ(last_step(), 0u);
-  for (int i = 0; i < 100; ++i) turn();
-  EXPECT_EQ(steps_taken_, 0) << "the first step waits";
-  say({{"do", "step"}, {"count", 3}});
-  ASSERT_TRUE(until([&] { return last_step() == 3; }));
-  EXPECT_EQ(steps_taken_, 3);
-  say({{"do", "play"}});
-  EXPECT_TRUE(until([&] { return !is_running_; }));
-  EXPECT_EQ(steps_taken_, 10);
-}
-
 TEST_F(WatchedProgram, QuestionsAreAnsweredFromTheSceneInAPause) {
   attach();
   turn();
@@ -236,43 +142,6 @@ TEST_F(WatchedProgram, QuestionsWaitForTheNextStepOfARunningProgram) {
   ASSERT_TRUE(until([&] { return !answers_.empty(); }));
   EXPECT_EQ(answers_[0].json["name"], "left");
   EXPECT_TRUE(until([&] { return !is_running_; }));
-}
-
-TEST_F(WatchedProgram, BreakSaysWhatAndWhere) {
-  attach();
-  turn();
-  give_credit();
-  say({{"do", "break"}, {"contact_begin", true}});
-  turn();
-  run(30);
-  ASSERT_TRUE(until([&] {
-    give_credit();  // for frames of the steps before
-    return !frames_.empty() && !frames_.back().json["playing"];
-  }));
-  const Json& found = frames_.back().json["break"];
-  EXPECT_EQ(found["event"], "contact_begin");
-  EXPECT_EQ(found["text"], "left begins to touch right");
-  EXPECT_EQ(found["objects"], Json({0, 1}));
-  EXPECT_TRUE(found["point"].is_array());
-  EXPECT_EQ(scene_.result().contact_events.begin.size(), 1u) << "the program waits in this step";
-  give_credit();
-  say({{"do", "play"}});
-  EXPECT_TRUE(until([&] { return !is_running_; }));
-  EXPECT_EQ(steps_taken_, 30);
-}
-
-TEST_F(WatchedProgram, RefusesABreakThatNeverHappens) {
-  attach();
-  turn();
-  give_credit();
-  run(1);
-  ASSERT_TRUE(until([&] { return !is_running_; }));
-  say({{"do", "break"}, {"depth_above", 0.1}});
-  ASSERT_TRUE(until([&] { return !failures_.empty(); }));
-  EXPECT_NE(failures_[0].json["message"].get<std::string>().find("does not detect penetration"),
-            std::string::npos);
-  EXPECT_THROW(gate_->set_breaks({.depth_above = 1}), Error);
-  EXPECT_NO_THROW(gate_->set_breaks({.contact_begin = true, .intersection = true}));
 }
 
 /// The past of a program is detected again from the positions that the program had.
@@ -360,63 +229,6 @@ TEST_F(WatchedProgram, EventsOfStepsWithoutAFrameArrive) {
   EXPECT_LT(end[0][0], 60u) << "no frame was sent of this step";
 }
 
-TEST_F(WatchedProgram, BreakFromTheProgramDoesNotWaitWithoutAPage) {
-  attach({.breaks = {.contact_begin = true}});
-  page_->session.leave();
-  run(30);
-  EXPECT_TRUE(eventually([&] { return !is_running_; }));
-}
-
-TEST_F(WatchedProgram, BreakWaitsForAPageWhenTheProgramSaysSo) {
-  attach({.wait_for_page = true});
-  run(2);
-  EXPECT_TRUE(eventually([&] { return gate_->state().step_count == 1; }));
-  EXPECT_EQ(steps_taken_, 0) << "the first step waits for its frame";
-  turn();
-  give_credit();
-  EXPECT_TRUE(until([&] { return !is_running_; }));
-  EXPECT_GE(gate_->frame_count(), 1u);
-}
-
-TEST_F(WatchedProgram, PageThatLeavesContinuesTheProgram) {
-  attach();
-  turn();
-  give_credit();
-  say({{"do", "pause"}});
-  run(3);
-  ASSERT_TRUE(until([&] { return !frames_.empty(); }));
-  EXPECT_EQ(steps_taken_, 0);
-  page_->session.leave();
-  EXPECT_TRUE(eventually([&] { return !is_running_; }));
-  EXPECT_TRUE(gate_->state().runs);
-}
-
-TEST_F(WatchedProgram, CloseEndsAPause) {
-  attach();
-  turn();
-  give_credit();
-  say({{"do", "pause"}});
-  run(3);
-  ASSERT_TRUE(until([&] { return !frames_.empty(); }));
-  gate_->close();
-  EXPECT_TRUE(until([&] { return !is_running_; }));
-}
-
-TEST_F(WatchedProgram, StopEndsAPause) {
-  attach();
-  turn();
-  give_credit();
-  say({{"do", "pause"}});
-  std::stop_source stop;
-  DetectRequest request;
-  request.stop = stop.get_token();
-  run(1, request);
-  ASSERT_TRUE(until([&] { return !frames_.empty(); }));
-  EXPECT_EQ(steps_taken_, 0);
-  stop.request_stop();
-  EXPECT_TRUE(until([&] { return !is_running_; }));
-}
-
 TEST_F(WatchedProgram, ObjectsThatComeAndGoAreANewScene) {
   attach();
   turn();
@@ -468,29 +280,6 @@ TEST_F(WatchedProgram, PlaceOfARemovedObjectStaysEmpty) {
   give_credit();
   ASSERT_TRUE(until([&] { return !frames_.empty(); }));
   EXPECT_TRUE(failures_.empty());
-}
-
-TEST_F(WatchedProgram, WaitShowsTheLastStepUntilThePageContinues) {
-  attach();
-  run(2);
-  ASSERT_TRUE(eventually([&] { return !is_running_; }));
-  program_.join();
-  is_running_ = true;
-  program_ = std::thread([this] {
-    gate_->wait(scene_, {});
-    is_running_ = false;
-  });
-  turn();
-  give_credit();
-  ASSERT_TRUE(until([&] { return !frames_.empty(); }));
-  EXPECT_EQ(last_step(), 1u);
-  EXPECT_EQ(frames_[0].json["playing"], false);
-  page_->session.leave();
-  for (int i = 0; i < 100; ++i) std::this_thread::yield();
-  EXPECT_TRUE(is_running_) << "it waits for another page";
-  page_->session.greet();
-  say({{"do", "play"}});
-  EXPECT_TRUE(until([&] { return !is_running_; }));
 }
 
 TEST_F(WatchedProgram, CommandsOfOtherSourcesAreRefused) {

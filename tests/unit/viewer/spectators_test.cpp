@@ -5,11 +5,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <list>
+#include <memory>
+#include <span>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "page_client.hpp"
 #include "server/server.hpp"
@@ -125,6 +130,51 @@ TEST_F(ViewerSpectators, ThereAreNotTooMany) {
     EXPECT_EQ(watchers.back().receive().kind, ViewerMessage::scene);
   }
   EXPECT_EQ(watch().receive_close(), too_many_spectators);
+}
+
+/// A message that no buffer of a socket holds.
+Message large_message(MessageKind kind, int step) {
+  const auto writer = std::make_shared<MessageWriter>();
+  writer->begin(kind);
+  writer->add_text(R"({"step": )" + std::to_string(step) + "}");
+  const std::span<Vec3f> positions = writer->add<Vec3f>(Tag::positions, 0, 500'000);
+  std::fill(positions.begin(), positions.end(), Vec3f{static_cast<float>(step), 0, 0});
+  return {writer->finish(), writer};
+}
+
+/// One that reads nothing has one message in the network, and gets the newest one next, however many came.
+TEST(ViewerSlowSpectator, MissesFramesAndIsOwedOnlyTheNewest) {
+  alarm(120);
+  asio::io_context network;
+  tcp::acceptor acceptor(network, {asio::ip::make_address("127.0.0.1"), 0});
+  Spectators spectators(std::chrono::hours(1));
+  auto connected = std::async(std::launch::async, [port = acceptor.local_endpoint().port()] {
+    return std::make_unique<PageClient>(port, "");
+  });
+  tcp::socket socket = acceptor.accept();
+  socket.set_option(asio::socket_base::send_buffer_size(1 << 16));
+  beast::flat_buffer buffer;
+  http::request<http::empty_body> request;
+  http::read(socket, buffer, request);
+  spectators.accept(beast::tcp_stream(std::move(socket)), request);
+  while (connected.wait_for(std::chrono::seconds(0)) != std::future_status::ready) network.poll();
+  const std::unique_ptr<PageClient> spectator = connected.get();
+  network.poll();
+  spectators.relay(large_message(MessageKind::scene, -1));
+  for (int step = 0; step < 20; ++step) {
+    spectators.relay(large_message(MessageKind::frame, step));
+    network.poll();
+  }
+  std::thread reader([&] {
+    EXPECT_EQ(spectator->receive().kind, ViewerMessage::scene);
+    const ViewerMessage frame = spectator->receive();
+    EXPECT_EQ(frame.json["step"], 19) << "no frame between was kept";
+    EXPECT_EQ(frame.values<Vec3f>(32, 0).at(499'999).x, 19);
+    network.stop();
+  });
+  network.run();
+  reader.join();
+  alarm(0);
 }
 
 }  // namespace

@@ -35,6 +35,8 @@ TEST(ViewFile, AcceptsEveryMember) {
     "layers": {"surface": true, "vertices": false}, "octree": {"only_selected": false, "level": -1},
     "nodes": {"objects": [0, 7], "level": -2}, "marks": {"slice": "x", "slice_at": 1, "up": "z", "point_size": 3},
     "objects": {"": {}, "a.obj": {"visible": false, "colour": "#A0b1c2", "opacity": 0.5}}, "filter": "",
+    "views": {"layout": "two", "slices": {"second": {"axis": "y", "at": 0.5, "flipped": true}},
+              "hidden": {"second": {"a.obj": true}}},
     "tab": "Plots", "panels": true})"),
             "");
   EXPECT_EQ(fault_of(R"({"version": 1, "nodes": {"objects": null}})"), "");
@@ -60,6 +62,10 @@ TEST(ViewFile, NamesTheMemberAndWhatItMustBe) {
   EXPECT_EQ(fault(R"("marks": {"slice": "off x"})"), "view.json: marks.slice is not one of off, x, y, z");
   EXPECT_EQ(fault(R"("objects": {"a.b": {"colour": "#12345g"}})"),
             "view.json: objects.a.b.colour is not a colour such as #8ecae6");
+  EXPECT_EQ(fault(R"("views": {"slices": {"third": {"at": 2}}})"),
+            "view.json: views.slices.third.at is not a number from 0 to 1");
+  EXPECT_EQ(fault(R"("views": {"hidden": {"third": {"a.b": 1}}})"),
+            "view.json: views.hidden.third.a.b is not true or false");
   EXPECT_EQ(fault(R"("objects": {"a": {"opacity": 1.5}})"),
             "view.json: objects.a.opacity is not a number from 0 to 1");
   EXPECT_EQ(fault(R"("nodes": {"objects": [0, -1]})"),

@@ -49,6 +49,9 @@ struct AttachOptions {
   /// Memory in bytes for the positions of the last steps that the page got, at least 0. The page can go back
   /// to these steps, and computes speeds from them; 0 keeps none.
   double history_bytes = 5e8;
+  /// Makes a second address: whoever opens it sees what the page shows of the scene, with a camera of their
+  /// own, and controls nothing. See `View::watching_url`.
+  bool spectators = false;
   BreakOptions breaks{};
 };
 
@@ -68,6 +71,9 @@ class View {
 
   /// The address of the page, with a secret token.
   const std::string& url() const;
+  /// The address for those who may only watch, with another secret token; empty without
+  /// `AttachOptions::spectators`.
+  const std::string& watching_url() const;
   std::uint64_t step_count() const;   ///< steps since `attach`
   std::uint64_t frame_count() const;  ///< steps that the page was given
   double seconds_in_steps() const;    ///< time that frames have taken, without pauses

@@ -190,6 +190,30 @@ async function saysThatTheProgramWasKilled(stage) {
   assert.ok((await page.evaluate(() => supple.model.objects[1].positions)) !== null);
 }
 
+async function isWatched(stage) {
+  const program = await start(stage);
+  const page = await open(stage, program);
+  const spectator = await stage.page();
+  await spectator.goto(/Watch (\S+)/.exec(program.output)[1]);
+  await hasFrame(spectator);
+  await spectator.getByText("watching").waitFor();
+  await runsOn(spectator, await step(spectator));
+  assert.ok(await spectator.getByRole("button", { name: "Pause" }).isHidden());
+  const group = await breaks(page);
+  await group.getByLabel("Two objects begin to touch").check();
+  await banner(spectator).getByText(/floor begins to touch/).waitFor();
+  assert.ok(await banner(spectator).getByRole("button", { name: "Continue" }).isHidden());
+  await spectator.getByRole("img", { name: "3D view" }).focus();
+  await spectator.keyboard.press("Space");
+  const at = await step(page);
+  await until(spectator, (at) => supple.model.frame.text.step === at, at);
+  await page.getByRole("button", { name: "+1 step" }).click();
+  await until(page, (at) => supple.model.frame.text.step > at, at);
+  assert.equal(await step(page), at + 1, "the spectator has not continued the program");
+  await spectator.close();
+  await banner(page).waitFor({ state: "hidden" });
+}
+
 /** The answer of a program that hangs is written by the test. */
 async function saysThatTheProgramHangs(stage) {
   const program = await start(stage);
@@ -216,6 +240,7 @@ export const tests = [
   ["breaks on the contact of two named objects", breaksOnAContact],
   ["breaks on numbers, and refuses wrong ones", breaksOnNumbers],
   ["a program goes on when its page is closed", goesOnWithoutThePage],
+  ["a program has spectators", isWatched],
   ["says that a program has ended", saysThatTheProgramEnds],
   ["says that a program was killed", saysThatTheProgramWasKilled],
   ["says that a program hangs", saysThatTheProgramHangs],

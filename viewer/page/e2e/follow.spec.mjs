@@ -80,7 +80,7 @@ async function pinsFollowEachStep(stage) {
   await until(page, () => supple.pins.list.length === 1);
 }
 
-/** A recording has the values of frames that were shown, and a click in a plot goes to a frame. */
+/** A recording has the values of all frames, also of those that were not shown, and a click in a plot goes to a frame. */
 async function pinsOfARecording(stage) {
   const file = stage.file("run.h5");
   await runProgram(stage.supple, ["simulate", nine, "--steps", "40", "--record", file, "--quiet"]);
@@ -88,22 +88,48 @@ async function pinsOfARecording(stage) {
   await until(page, () => supple.model.history.frames.length > 0);
   await page.evaluate(() => supple.pins.add([0, 1]));
   await page.evaluate(() => supple.pins.add([0]));
-  await page.getByText("A recording has values of the frames that were shown").first().waitFor();
-  await page.getByRole("combobox", { name: "Speed" }).selectOption("5");
-  await page.getByRole("button", { name: "Play" }).click();
-  const last = await page.evaluate(() => supple.model.scene.frames - 1);
-  await until(page, (last) => supple.model.frame.text.step === last && !supple.model.frame.text.playing, last);
-  for (let frame = last - 1; frame > last - 10; --frame) {
-    await page.keyboard.press("ArrowLeft");
+  const frames = await page.evaluate(() => supple.model.scene.frames);
+  await until(page, (frames) => supple.pins.list.every(({ series }) => series.steps.length === frames), frames);
+  await page.getByText(`Values of ${frames} steps.`).waitFor();
+  await page.getByRole("progressbar").waitFor({ state: "hidden" });
+  const contacts = await page.evaluate(() => supple.pins.list[0].series.columns[0]);
+  for (const frame of [frames - 1, frames - 2, 20]) {
+    await page.evaluate((frame) => supple.client.ask({ do: "seek", frame }), frame);
     await until(page, (frame) => supple.model.frame.text.step === frame, frame);
+    const shown = await page.evaluate(() => Array.from({ length: supple.model.frame.contacts.length / 8 }, (_, i) => supple.model.frame.contacts.subarray(8 * i, 8 * i + 4)).filter(([a, , b]) => a === 0 && b === 1).length);
+    assert.equal(contacts[frame], shown, `in frame ${frame}`);
   }
   const steps = await page.evaluate(() => supple.pins.list[0].series.steps);
-  assert.ok(steps.length > 8 && steps.every((step, i) => i === 0 || step > steps[i - 1]), steps.join());
+  assert.deepEqual(steps, Array.from({ length: frames }, (_, i) => i));
   const plot = page.locator(".pin-detail .u-over").first();
   await plot.scrollIntoViewIfNeeded();
   const area = await plot.boundingBox();
   await page.mouse.click(area.x + 1, area.y + area.height / 2);
   await until(page, (first) => supple.model.frame.text.step === first, steps[0]);
+}
+
+/** A tap on a plot goes to its step, without a pointer that was there before. */
+async function tapsOnPlotsSeek(stage) {
+  const file = stage.file("run.h5");
+  await runProgram(stage.supple, ["simulate", nine, "--steps", "40", "--record", file, "--quiet"]);
+  const program = await stage.program(file);
+  const page = await stage.page({ hasTouch: true });
+  await page.goto(program.address);
+  await hasFrame(page);
+  await page.evaluate(() => supple.pins.add([0, 1]));
+  await until(page, () => supple.pins.list[0].series.steps.length === supple.model.scene.frames);
+  const taps = async (plot, share) => {
+    await plot.scrollIntoViewIfNeeded();
+    const { x, y, width, height } = await plot.boundingBox();
+    await page.touchscreen.tap(x + share * width, y + height / 2);
+    await until(page, (share) => Math.abs(supple.model.frame.text.step / (supple.model.scene.frames - 1) - share) < 0.1, share);
+  };
+  for (const name of ["Pins", "Plots"]) {
+    await page.getByRole("tab", { name }).tap();
+    const plot = page.locator(`#page-${name} .u-over`).first();
+    await plot.waitFor();
+    for (const share of [0.75, 0.25]) await taps(plot, share);
+  }
 }
 
 /** Of a pair that never touches and of a contact that has ended, the page says so. */
@@ -258,6 +284,7 @@ async function helpListsTheCommands(stage) {
 export const tests = [
   ["pins have each step", pinsFollowEachStep],
   ["pins of a recording", pinsOfARecording],
+  ["a tap on a plot goes to its step", tapsOnPlotsSeek],
   ["pins say what is missing", pinsSayWhatIsMissing],
   ["tables are filtered by each column", tablesAreFiltered],
   ["objects are sorted", objectsAreSorted],

@@ -1,5 +1,6 @@
 // Looking inside: a slice with caps, one object alone, another point to turn around, values below the pointer, several views.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { camera, coloursAt, goesOn, groundPlace, hasFrame, pause, picture, scenes, seenTriangle, settled, TWO_BALLS, until } from "./tools/harness.mjs";
 
@@ -126,13 +127,13 @@ async function marksShowTheirValues(stage) {
   for (const label of ["Depths", "Curves", "Contact points"]) await page.getByRole("checkbox", { name: label }).uncheck();
   await rests("near", "proximityPoints", 0);
   const gaps = await page.evaluate(() => Array.from({ length: supple.model.frame.proximityPoints.length / 8 }, (_, i) => supple.model.frame.proximityPoints[8 * i + 3]));
-  const gap = Number(await row(page, "gap"));
+  const gap = Number(await row(page, "gap (length)"));
   assert.ok(gaps.some((value) => Math.abs(value - gap) < 1e-4 * value), `${gap} is not a gap`);
   await page.getByRole("checkbox", { name: "Proximity pairs" }).uncheck();
   await page.getByRole("checkbox", { name: "Depths" }).check();
   await rests("vertex inside", "penetrationPoints", 0);
   const depths = await page.evaluate(() => Array.from({ length: supple.model.frame.penetrationPoints.length / 8 }, (_, i) => supple.model.frame.penetrationPoints[8 * i + 3]));
-  const depth = Number(await row(page, "depth"));
+  const depth = Number(await row(page, "depth (length)"));
   assert.ok(depths.some((value) => Math.abs(value - depth) < 1e-4 * value), `${depth} is not a depth`);
   await page.getByRole("checkbox", { name: "Depths" }).uncheck();
   await page.getByRole("checkbox", { name: "Contact points" }).check();
@@ -140,6 +141,52 @@ async function marksShowTheirValues(stage) {
   const length = Math.hypot(...(await row(page, "normal")).split(", ").map(Number));
   assert.ok(Math.abs(length - 1) < 0.01);
   assert.match(await row(page, "one"), /^triangle \d+$/);
+}
+
+/** The value of the shown field is that of the session, at the vertex, the triangle or the mark. */
+async function fieldIsShown(stage) {
+  const ball = (name, x, more) => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 4\ntranslate = [${x}, 0, 0]\nmargin = 0.3\nsolid = true\n${more}`;
+  const sways = 'motion = { kind = "sway", amplitude = 0.2, wavelength = 1.5, period = 1 }\n';
+  const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "proximity,penetration"\ntime_step = 0.01\n${ball("one", 0, sways)}${ball("two", 1.9, "")}${ball("three", 4.1, "")}`));
+  await until(page, () => supple.model.frame.text.step > 2);
+  await pause(page);
+  for (const label of ["Depths", "Curves", "Contact points", "Proximity pairs"]) await page.getByRole("checkbox", { name: label }).uncheck();
+  const choose = (label) => page.getByRole("combobox", { name: "Field", exact: true }).selectOption({ label });
+  const isEqual = (text, value, what) => assert.ok(Math.abs(Number(text) - value) <= 1e-4 * Math.abs(value), `${what}: ${text} is not ${value}`);
+  for (const [label, unit, kind] of [["Speed", " (length/s)", "vertex"], ["Strain", "", "triangle"], ["Distance to other objects", " (length)", "vertex"], ["Velocity", ", length of the vector (length/s)", "vertex"]]) {
+    await choose(label);
+    await settled(page);
+    const seen = await seenTriangle(page, 0);
+    await page.mouse.move(seen.x, 130);
+    await page.mouse.move(seen.x, seen.y);
+    await tooltip(page).locator(`dt:text-is("${label}${unit}")`).waitFor();
+    const about = { do: "read", object: 0, [kind]: Number(await row(page, kind)) };
+    const exact = (await page.evaluate((about) => supple.client.ask(about), about)).field[label];
+    isEqual(await row(page, `${label}${unit}`), Array.isArray(exact) ? Math.hypot(...exact) : exact, label);
+    if (Array.isArray(exact)) (await row(page, label)).split(", ").forEach((x, axis) => assert.ok(Math.abs(Number(x) - exact[axis]) < 1e-3 * Math.hypot(...exact)));
+  }
+  await choose("Depth");
+  await settled(page);
+  const outside = await page.evaluate(() => {
+    const { positions, vertices } = supple.model.objects[2];
+    return [0, 1, 2].map((axis) => Array.from({ length: vertices }, (_, i) => positions[3 * i + axis]).reduce((sum, x) => sum + x, 0) / vertices);
+  });
+  const at = await page.evaluate((point) => supple.project(point), outside);
+  await page.mouse.move(at.x, at.y);
+  await tooltip(page).getByText("no value").waitFor();
+
+  await choose("Gap");  // the dots of the field are marks, too, without the layer of pairs
+  await settled(page);
+  const { points, gaps } = await page.evaluate(() => {
+    const rows = Array.from({ length: supple.model.frame.proximityPoints.length / 8 }, (_, i) => [...supple.model.frame.proximityPoints.subarray(8 * i, 8 * i + 4)]);
+    return { points: rows, gaps: rows.map((row) => row[3]) };
+  });
+  const dot = await page.evaluate((point) => supple.project(point), points[0].slice(0, 3));
+  await page.mouse.move(dot.x, 130);
+  await page.mouse.move(dot.x, dot.y);
+  await tooltip(page).getByText("near").waitFor();
+  const shown = Number(await row(page, "gap (length)"));
+  assert.ok(gaps.some((gap) => Math.abs(gap - shown) < 1e-4 * gap), `${shown} is no gap`);
 }
 
 /** A finger that stays shows the values; they stay until the next touch. */
@@ -256,6 +303,70 @@ async function viewsArePicked(stage) {
   assert.notEqual(await picture(page), before);
 }
 
+/** The slice and the objects of one view change nothing in the other. They survive a reload. */
+async function viewsHaveTheirSliceAndObjects(stage) {
+  const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
+  for (const label of ["Smooth", "Occlusion"]) await page.getByRole("checkbox", { name: label }).uncheck();
+  await settled(page);
+  await page.keyboard.press("q");  // two views: both see both balls
+  await settled(page);
+  const middles = await page.evaluate(() => supple.model.objects.map(({ positions }) => [0, 1, 2].map((axis) => positions.filter((_, i) => i % 3 === axis).reduce((sum, x) => sum + x, 0) / (positions.length / 3))));
+  /** The colours of both balls in the active view. */
+  const balls = () => coloursAt(page, middles);
+  const isActive = (number) => page.getByRole("img", { name: `3D view, ${number} of 2 is active` }).waitFor();
+  const first = await balls();
+  await page.keyboard.press("z");
+  await isActive(2);
+  await settled(page);
+  const second = await balls();
+
+  // From the front, a slice in z through the middle shows caps.
+  await slice(page).selectOption("z");
+  await settled(page);
+  const cut = await balls();
+  assert.ok(cut.every((colour, i) => colour.join() !== second[i].join()), "caps have another colour");
+  await page.getByRole("checkbox", { name: "Show left" }).uncheck();
+  await settled(page);
+  const alone = await balls();
+  assert.notDeepEqual(alone[0], cut[0]);
+  assert.deepEqual(alone[1], cut[1]);
+  const pickedIn = () => page.evaluate((middles) => middles.map((middle) => {
+    const { x, y } = supple.project(middle);
+    return supple.pickAt(x, y)?.object ?? null;
+  }), middles);
+  assert.deepEqual(await pickedIn(), [null, 1], "what is hidden or cut off is not picked");
+
+  await page.keyboard.press("z");
+  await isActive(1);
+  await settled(page);
+  assert.deepEqual(await balls(), first, "the first view shows what it showed");
+  assert.deepEqual(await pickedIn(), [0, 1]);
+  assert.equal(await slice(page).inputValue(), "off", "the panel is that of the active view");
+  assert.ok(await page.getByRole("checkbox", { name: "Show left" }).isChecked());
+  await page.getByRole("checkbox", { name: "Show right" }).uncheck();
+  await settled(page);
+  assert.deepEqual((await balls())[0], first[0]);
+
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save view" }).click()]);
+  const path = stage.file("view.json");
+  await download.saveAs(path);
+  const { marks, objects, views } = JSON.parse(readFileSync(path, "utf8"));
+  assert.deepEqual([marks.slice, objects.right.visible, objects.left], ["off", false, undefined]);
+  assert.deepEqual([views.slices, views.hidden], [{ second: { axis: "z", at: 0.5, flipped: false } }, { second: { left: true } }]);
+  await page.reload();
+  await hasFrame(page);
+  await settled(page);
+  await page.keyboard.press("z");
+  await isActive(2);
+  await settled(page);
+  assert.deepEqual(await balls(), alone);
+
+  // A file of earlier versions has one slice for all views.
+  await page.getByLabel("View file", { exact: true }).and(page.locator("input")).setInputFiles({ name: "old.json", mimeType: "application/json", buffer: Buffer.from('{"version": 1, "marks": {"slice": "x"}, "objects": {}, "views": {"layout": "two"}}') });
+  await until(page, () => supple.model.slice.axis === "x");
+  assert.deepEqual(await page.evaluate(() => [supple.model.slices[1].axis, ...supple.model.objects.flatMap(({ visibleIn }) => visibleIn.slice(0, 2))]), ["x", true, true, true, true]);
+}
+
 /** Positions go to the graphics card once, however many views show them. */
 async function viewsShareTheirData(stage) {
   const { page } = await stage.view(nine);
@@ -312,9 +423,11 @@ export const tests = [
   ["a double click sets the pivot", doubleClickSetsThePivot],
   ["a resting pointer shows the values of a surface", surfaceShowsItsValues],
   ["a resting pointer shows gap, depth and normal of marks", marksShowTheirValues],
+  ["the resting pointer shows the value of the field", fieldIsShown],
   ["a long press shows values", longPressShowsValues],
   ["several views have their cameras", viewsHaveTheirCameras],
   ["several views are picked", viewsArePicked],
+  ["several views have their slices and objects", viewsHaveTheirSliceAndObjects],
   ["several views share their data", viewsShareTheirData],
   ["several views in narrow windows", viewsInANarrowWindow],
 ];

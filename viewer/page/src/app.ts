@@ -24,7 +24,7 @@ import { PaneFrames } from "./panels/pane_frames";
 import { PinTable } from "./panels/tables/pin_table";
 import { Player } from "./panels/player";
 import { Program } from "./panels/program";
-import { Plots } from "./panels/plots";
+import { Plots } from "./panels/plots/plots";
 import { LAYER_ROWS, ScenePanel } from "./panels/scene_panel";
 import { Settings } from "./panels/settings";
 import { Pace } from "./pace";
@@ -36,7 +36,7 @@ import { hasCargo, openWorker } from "./transport/worker";
 import { AXIS_VIEWS, type AxisView } from "./view/camera";
 import { layoutOf } from "./view/panes";
 import { SceneView } from "./view/scene_view";
-import { applyCamera, MOST_STORED, showView, viewOf, type ViewState } from "./view_state";
+import { applyCamera, MOST_STORED, showLooks, showView, viewOf, type ViewState } from "./view_state";
 import { firstView } from "./views/first_view";
 import { viewOfHash } from "./views/view_file";
 import { Views } from "./views/views";
@@ -164,6 +164,8 @@ export class App {
     const frames = new PaneFrames(this.canvas, view.panes);
     view.panes.onChange = () => {
       frames.update();
+      model.view = view.panes.active.index;
+      model.emit("display", null);
       this.showProjection();
     };
     const hover = new Hover(this.canvas, model, view.pointing);
@@ -293,15 +295,17 @@ export class App {
 
   private applyView(view: Partial<ViewState>, withCamera = true): void {
     const { model } = this;
-    showView(model, view);
-    model.emit("display", null);  // a change of the upward axis turns the camera
-    model.emit("request", null);
     const { panes } = this.view;
     panes.activate(panes.shown[0]!);
+    showView(model, view);
+    model.emit("display", null);  // a change of the upward axis turns the camera
     if (withCamera) applyCamera(panes.active.rig, view.camera ?? {});
     if (view.views?.layout) this.view.setLayout(layoutOf(view.views.layout));
     if (view.views?.cameras) panes.placeCameras(view.views.cameras);
-    if (view.pins) this.pins.restore(view.pins);
+    showLooks(model, view);
+    model.emit("display", null);
+    model.emit("request", null);
+    if (view.pins && !this.job) this.pins.restore(view.pins);  // pictures have none
     this.showProjection();
     if (view.tab) this.openTab(view.tab);
     if (view.panels !== undefined) this.body.classList.toggle("bare", !view.panels);

@@ -1,7 +1,10 @@
 /** Connects transport and model: reads messages, gives credit, matches answers to requests. */
 import { Emitter } from "./emitter";
 import type { Layer, Model } from "./model";
-import { countsOf, MessageError, readMessage, type FailureMessage, type FrameText, type SceneCounts } from "./protocol/messages";
+import type { FailureMessage, FrameText } from "./protocol/messages";
+import { readMessage } from "./protocol/read_message";
+import { countsOf, type SceneCounts } from "./protocol/read_scene";
+import { MessageError } from "./protocol/read_sections";
 import type { EndReason, Transport, TransportEvents } from "./transport/transport";
 
 export type Status =

@@ -1,9 +1,11 @@
 /** The state of the page: the scene, the newest frame, and the user's choices. */
+import type { Bounds } from "./bounds";
 import { objectColour } from "./colours";
 import { sidesOf, type ContactKey } from "./contacts";
 import { Emitter } from "./emitter";
 import { firstChoice, type FieldChoice } from "./fields/fields";
-import { EVENT_KINDS, type EventKind, type FrameMessage, type SceneMessage, type SceneObject, type SceneText, type SeriesMessage } from "./protocol/messages";
+import { eventsOf, History } from "./history";
+import { EVENT_KINDS, type FrameMessage, type SceneMessage, type SceneObject, type SceneText, type SeriesMessage } from "./protocol/messages";
 import { shiftFrame, shiftOf } from "./shift";
 
 export interface ObjectState {
@@ -22,17 +24,27 @@ export interface ObjectState {
   /** Edges and points of no triangle: rods and particles. */
   edges: Uint32Array;
   points: Uint32Array;
+  /** In the active view, or in the one that is drawn. */
   visible: boolean;
+  /** In each view. */
+  visibleIn: boolean[];
   colour: string;
   opacity: number;
   /** A cache for `boundsOf`, valid for the current positions. */
   bounds?: Bounds | null | undefined;
 }
 
-export interface Bounds {
-  lower: [number, number, number];
-  upper: [number, number, number];
+/** The plane that cuts surfaces open. */
+export interface SliceChoice {
+  axis: "off" | "x" | "y" | "z";
+  /** Where along the axis, from 0 to 1. */
+  at: number;
+  /** Whether the other side is removed. */
+  flipped: boolean;
 }
+
+/** Views of the scene beside each other. */
+export const MOST_VIEWS = 4;
 
 export const LAYERS = [
   "surface", "wireframe", "regions", "octree", "nodes", "pairs", "candidates", "triangles", "points", "normals", "segments", "proximity", "depths", "curves", "vertices",
@@ -70,20 +82,6 @@ export interface Explanation {
   nearest: Measurement | null;
 }
 
-export interface Event {
-  frame: number;
-  a: number;
-  b: number;
-}
-export type Events = Record<EventKind, { begin: Event[]; end: Event[] }>;
-const noEvents = (): Events => ({ contact: { begin: [], end: [] }, narrow_phase: { begin: [], end: [] }, volume: { begin: [], end: [] } });
-
-function eventsOf(data: Uint32Array): Event[] {
-  return Array.from({ length: data.length / 3 }, (_, i) => ({ frame: data[3 * i]!, a: data[3 * i + 1]!, b: data[3 * i + 2]! }));
-}
-
-export const EVENT_LABELS: Record<EventKind, string> = { contact: "contacts", narrow_phase: "narrow phase", volume: "broad phase" };
-
 /** The colliding nodes to draw: of two objects or of all pairs, on one level. */
 export interface NodeChoice {
   objects: [number, number] | null;
@@ -105,49 +103,6 @@ interface ModelEvents {
   history: null;
   /** An object was pulled. */
   pulled: null;
-}
-
-const MOST_ROWS = 4000;
-
-/** Rows of numbers: one per frame of a recording, one per step of a simulation, of the last steps. */
-export class History {
-  names: string[] = [];
-  columns: number[][] = [];
-  frames: number[] = [];
-  events = noEvents();
-  /** The rows of a simulation that are kept. */
-  most = MOST_ROWS;
-
-  reset(names: string[]): void {
-    this.names = names;
-    this.columns = names.map(() => []);
-    this.frames = [];
-    this.events = noEvents();
-  }
-
-  get last(): number {
-    return this.frames[this.frames.length - 1] ?? -1;
-  }
-
-  push(frame: number, time: number, statistics: ArrayLike<number>): void {
-    this.frames.push(frame);
-    this.columns[0]!.push(time);
-    for (let i = 1; i < this.columns.length; ++i) this.columns[i]!.push(statistics[i - 1] ?? NaN);
-    if (this.frames.length <= this.most) return;
-    const surplus = this.most / 4;  // remove many rows at once, so that the cost per frame is small
-    this.frames.splice(0, surplus);
-    for (const column of this.columns) column.splice(0, surplus);
-    const first = this.frames[0]!;
-    for (const events of Object.values(this.events)) {
-      events.begin = events.begin.filter((event) => event.frame >= first);
-      events.end = events.end.filter((event) => event.frame >= first);
-    }
-  }
-
-  column(name: string): number[] | null {
-    const at = this.names.indexOf(name);
-    return at < 0 ? null : this.columns[at]!;
-  }
 }
 
 /** The look of an object that nobody has changed. Objects of a second recording lie over those of the first. */
@@ -203,10 +158,12 @@ export class Model extends Emitter<ModelEvents> {
   occlusion = false;
   /** Whether surfaces are so transparent that everything inside is visible. */
   xray = false;
-  /** The axis across which surfaces are cut open, where along it from 0 to 1, and which side is removed. */
-  slice: "off" | "x" | "y" | "z" = "off";
-  sliceAt = 0.5;
-  sliceFlipped = false;
+  /** Of each view. */
+  slices: SliceChoice[] = Array.from({ length: MOST_VIEWS }, () => ({ axis: "off", at: 0.5, flipped: false }));
+  /** The active view, or the one that is drawn: `slice` and the visibility of objects are its own. */
+  view = 0;
+  /** How many views are shown. */
+  viewCount = 1;
   /** The upward axis. */
   up: "y" | "z" = "y";
   /** Whether the resting pointer shows values. */
@@ -234,6 +191,7 @@ export class Model extends Emitter<ModelEvents> {
     if (!message.text.comparison) this.shift = 0;
     this.positions = new Float32Array(3 * message.text.objects.reduce((sum, object) => sum + object.vertices, 0));
     let first = 0;
+    const model = this;
     this.objects = message.text.objects.map((object, index) => {
       const kept = old[index]?.name === object.name ? old[index] : undefined;
       const look = usualLook(message.text, index);
@@ -247,7 +205,13 @@ export class Model extends Emitter<ModelEvents> {
         kind: kindOf(object, message.text.source),
         positions: this.positions.subarray(first, (first += 3 * object.vertices)),
         ...elementsOf(message, index),
-        visible: kept?.visible ?? true,
+        visibleIn: kept?.visibleIn ?? new Array<boolean>(MOST_VIEWS).fill(true),
+        get visible() {
+          return this.visibleIn[model.view]!;
+        },
+        set visible(on) {
+          this.visibleIn[model.view] = on;
+        },
         colour: kept?.colour ?? look.colour,
         opacity: kept?.opacity ?? look.opacity,
       };
@@ -303,6 +267,32 @@ export class Model extends Emitter<ModelEvents> {
     for (const kind of EVENT_KINDS)
       this.history.events[kind] = { begin: eventsOf(message.events[kind].begin), end: eventsOf(message.events[kind].end) };
     this.emit("history", null);
+  }
+
+  get slice(): SliceChoice {
+    return this.slices[this.view]!;
+  }
+
+  /** Calls `look` with `slice` and the visibility of a view. */
+  inView<Result>(view: number, look: () => Result): Result {
+    const active = this.view;
+    this.view = view;
+    try {
+      return look();
+    } finally {
+      this.view = active;
+    }
+  }
+
+  /** A view begins with the slice and the objects of another one. */
+  copyView(from: number, to: number): void {
+    this.slices[to] = { ...this.slices[from]! };
+    for (const { visibleIn } of this.objects) visibleIn[to] = visibleIn[from]!;
+  }
+
+  /** Whether two views show the same objects. */
+  showsSame(view: number, other: number): boolean {
+    return view === other || this.objects.every(({ visibleIn }) => visibleIn[view] === visibleIn[other]);
   }
 
   private isShifted(index: number): boolean {
@@ -443,7 +433,7 @@ export class Model extends Emitter<ModelEvents> {
     const objects =
       this.octree.onlySelected && this.selection
         ? [this.selection.object]
-        : this.objects.filter((object) => object.visible).map((object) => object.index);
+        : this.objects.filter(({ visibleIn }) => visibleIn.slice(0, this.viewCount).includes(true)).map((object) => object.index);
     return {
       do: "layers",
       candidates: this.layers.candidates,
@@ -454,39 +444,4 @@ export class Model extends Emitter<ModelEvents> {
       field: this.scene?.fields.some(({ key }) => key === this.field.key) ? this.field.key : null,
     };
   }
-}
-
-/**
- * The bounds of all finite vertices of an object; null when there are none. Cached until the object moves.
- */
-export function boundsOf(object: ObjectState): Bounds | null {
-  if (object.bounds === undefined) object.bounds = findBounds(object.positions);
-  return object.bounds;
-}
-
-function findBounds(positions: Float32Array): Bounds | null {
-  const lower: Bounds["lower"] = [Infinity, Infinity, Infinity];
-  const upper: Bounds["upper"] = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < positions.length; i += 3)
-    for (let axis = 0; axis < 3; ++axis) {
-      const x = positions[i + axis]!;
-      if (x < lower[axis]!) lower[axis] = x;
-      if (x > upper[axis]!) upper[axis] = x;
-    }
-  return lower.every((x, axis) => x <= upper[axis]!) ? { lower, upper } : null;
-}
-
-/** The common bounds of several objects; null when there are none. */
-export function boundsOfAll(objects: ObjectState[]): Bounds | null {
-  let all: Bounds | null = null;
-  for (const object of objects) {
-    const bounds = boundsOf(object);
-    if (!bounds) continue;
-    all ??= { lower: [...bounds.lower], upper: [...bounds.upper] };
-    for (let axis = 0; axis < 3; ++axis) {
-      all.lower[axis] = Math.min(all.lower[axis]!, bounds.lower[axis]!);
-      all.upper[axis] = Math.max(all.upper[axis]!, bounds.upper[axis]!);
-    }
-  }
-  return all;
 }

@@ -184,9 +184,9 @@ export class Pins extends Emitter<PinEvents> {
     this.emit("list", null);
   }
 
-  /** The way back from the past measures a step again, without the speed. */
+  /** The way back from the past measures a step again, without the speed; a recording has it in each frame. */
   private take(rows: Map<number, Float64Array>): void {
-    const keeps = !this.isFresh;
+    const keeps = !this.isFresh && this.model.scene!.frames === null;
     this.isFresh = false;
     if (rows.size === 0) return;
     const width = 2 + this.names.length;

@@ -1,7 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Beginnings, contactCount, findContact, isTouching, keyAt, kindAt, pairsOf, pointOf, pointsAt, sidesOf } from "../src/contacts";
-import { countsOf, readMessage, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
+import type { FrameMessage, SceneMessage } from "../src/protocol/messages";
+import { readMessage } from "../src/protocol/read_message";
+import { countsOf } from "../src/protocol/read_scene";
 import { floats, FRAME, KIND, message, sceneMessage, text, words, type Section } from "./build_message";
 
 const counts = countsOf(readMessage(sceneMessage(), null) as SceneMessage);

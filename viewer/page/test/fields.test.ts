@@ -8,7 +8,9 @@ import { firstChoice, rangeOf, readField, showsColour, tickText } from "../src/f
 import { fillArrows } from "../src/fields/marks";
 import { FieldPaint } from "../src/fields/paint";
 import { Model, type ObjectState } from "../src/model";
-import { countsOf, readMessage, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
+import type { FrameMessage, SceneMessage } from "../src/protocol/messages";
+import { readMessage } from "../src/protocol/read_message";
+import { countsOf } from "../src/protocol/read_scene";
 import type { Lines } from "../src/view/marks";
 import { showView } from "../src/view_state";
 import { floats, FRAME, KIND, message, sceneMessage, text, words, type Section } from "./build_message";

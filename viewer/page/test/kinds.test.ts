@@ -3,7 +3,10 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { contactCount, findContact, keyAt, kindAt, pointsAt, sidesOf } from "../src/contacts";
-import { countsOf, readMessage, readsTag, type FrameMessage, type SceneCounts } from "../src/protocol/messages";
+import type { FrameMessage } from "../src/protocol/messages";
+import { readMessage } from "../src/protocol/read_message";
+import { countsOf, type SceneCounts } from "../src/protocol/read_scene";
+import { readsTag } from "../src/protocol/read_sections";
 import { STAGES } from "../src/stages";
 
 declare const process: { env: Record<string, string | undefined> };

@@ -1,6 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { countsOf, MessageError, NONE, readMessage, type FrameMessage, type SceneMessage, type SceneCounts } from "../src/protocol/messages";
+import { NONE, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
+import { readMessage } from "../src/protocol/read_message";
+import { countsOf, type SceneCounts } from "../src/protocol/read_scene";
+import { MessageError } from "../src/protocol/read_sections";
 import { floats, FRAME, frameMessage, KIND, message, SCENE, sceneMessage, seriesMessage, text, words, type Section } from "./build_message";
 
 const scene = readMessage(sceneMessage(), null) as SceneMessage;

@@ -6,7 +6,7 @@ import { pick } from "../src/view/picking";
 function object(index: number, positions: number[], corners: number[]): ObjectState {
   return {
     index, name: String(index), vertices: positions.length / 3, triangles: corners.length / 3, isStatic: false, isBody: false, kind: "at rest",
-    positions: new Float32Array(positions), corners: new Uint32Array(corners), edges: new Uint32Array(0), points: new Uint32Array(0), visible: true, colour: "", opacity: 1,
+    positions: new Float32Array(positions), corners: new Uint32Array(corners), edges: new Uint32Array(0), points: new Uint32Array(0), visible: true, visibleIn: [true], colour: "", opacity: 1,
   };
 }
 

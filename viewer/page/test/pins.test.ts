@@ -2,7 +2,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Model } from "../src/model";
 import { Pins, PinSeries, titleOf } from "../src/pins";
-import { countsOf, readMessage, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
+import type { FrameMessage, SceneMessage } from "../src/protocol/messages";
+import { readMessage } from "../src/protocol/read_message";
+import { countsOf } from "../src/protocol/read_scene";
 import { floats, FRAME, KIND, message, SCENE, text, words, type Section } from "./build_message";
 
 const WIDTH = 13;

@@ -11,7 +11,7 @@ const VIEW: ViewState = {
   marks: { slice: "x", slice_at: 0.25, up: "z" }, objects: { "a.obj": { visible: false, colour: "#8ECAE6", opacity: 0 } },
   field: { key: "speed", map: "magma", range: [0, 2], arrow_length: 50 },
   filter: "a", tab: "Pins", panels: false,
-  views: { layout: "two", cameras: { second: { position: [0, 0, 2], target: [0, 0, 0], zoom: 1, orthographic: true } } },
+  views: { layout: "two", cameras: { second: { position: [0, 0, 2], target: [0, 0, 0], zoom: 1, orthographic: true } }, slices: { second: { axis: "y", at: 0.5, flipped: true } }, hidden: { second: { "a.obj": true } } },
   pins: { 1: { a: "a.obj" }, 2: { a: "a.obj", b: "b.obj", contact: "0 3 1 4" } },
 };
 const refuses = (view: unknown, sentence: RegExp) => assert.throws(() => parseView(typeof view === "string" ? view : JSON.stringify(view)), sentence);

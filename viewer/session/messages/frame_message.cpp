@@ -415,6 +415,7 @@ void FramePacker::add_text(const FrameView& frame) {
   json_.member("loop", frame.loop);
   add_numbers("section", frame.section);
   add_numbers("range", frame.range);
+  add_numbers("pin_frames", frame.pin_frames);
   json_.member("past", frame.is_past);
   json_.key("field");
   frame.layers.field.empty() ? json_.null() : json_.value(frame.layers.field);
@@ -447,12 +448,12 @@ void FramePacker::add_text(const FrameView& frame) {
   message_->add_text(json_.text());
 }
 
-/// Adds a member with two steps, or null.
-void FramePacker::add_numbers(const char* name, const std::optional<std::array<std::uint64_t, 2>>& steps) {
+/// Adds a member with two numbers, or null.
+void FramePacker::add_numbers(const char* name, const std::optional<std::array<std::uint64_t, 2>>& numbers) {
   json_.key(name);
-  if (!steps) return json_.null();
+  if (!numbers) return json_.null();
   json_.begin_array();
-  for (const std::uint64_t step : *steps) json_.value(step);
+  for (const std::uint64_t number : *numbers) json_.value(number);
   json_.end_array();
 }
 

@@ -34,6 +34,8 @@ struct FrameView {
   std::array<std::uint64_t, 2> range{};                   ///< the first and the last step that can be shown
   bool is_past = false;                                   ///< a kept step, which is not the last one
   bool has_path = true;                                   ///< false: not the motion since the step before
+  /// While pins are measured in other frames: how many are measured, and how many there are.
+  std::optional<std::array<std::uint64_t, 2>> pin_frames{};
   bool is_recorded = false;  ///< a frame of a recording, whose events are in the time series
 };
 
@@ -84,7 +86,7 @@ class FramePacker {
   void add_scene_regions(const FrameView& frame);
   void add_colliding_vertices(const FrameView& frame);
   void add_text(const FrameView& frame);
-  void add_numbers(const char* name, const std::optional<std::array<std::uint64_t, 2>>& steps);
+  void add_numbers(const char* name, const std::optional<std::array<std::uint64_t, 2>>& numbers);
   std::size_t limited(const char* layer, std::uint64_t count);
 
   MessageWriter* message_ = nullptr;

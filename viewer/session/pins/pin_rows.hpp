@@ -25,6 +25,8 @@ class PinRows {
   void measure(const Scene& scene, std::uint64_t step, double time, const PinMeter::Earlier& earlier = {});
   /// Takes rows that were measured elsewhere.
   void add(std::span<const PinRow> rows);
+  /// Rows that the page does not have.
+  std::size_t size() const { return rows_.size(); }
   /// Adds a section for each pin that has rows, and forgets the rows.
   void add_to(MessageWriter& message);
 

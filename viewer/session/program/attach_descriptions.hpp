@@ -13,6 +13,15 @@ namespace supple {
 template <>
 inline constexpr std::array words<viewer::FieldElement>{"vertex", "face"};
 
+namespace viewer {
+
+/// Of `supple view` and of an attached program.
+inline constexpr const char* spectators_doc =
+    "Make a second address: whoever opens it sees what the page shows of the scene, with a camera of their "
+    "own, and controls nothing";
+
+}  // namespace viewer
+
 /// Without the names of objects, which belong to `contact_begin`.
 template <>
 struct Description<viewer::BreakOptions> {
@@ -76,6 +85,8 @@ struct Description<viewer::AttachOptions> {
                                    .doc = "Memory for the last steps, to which the page can go back",
                                    .range = ValueRange::from(0),
                                    .unit = "bytes"});
+    visitor(Field<Options, bool>{
+        .name = "spectators", .member = &Options::spectators, .doc = viewer::spectators_doc});
     visitor(Field<Options, viewer::BreakOptions>{
         .name = "breaks", .member = &Options::breaks, .doc = "Events that pause the program"});
   }

@@ -99,6 +99,7 @@ NB_MODULE(_viewer, module) {
   module.def("options", [] { return list_options<AttachOptions>(); });
   nb::class_<ViewCore>(module, "View")
       .def("url", [](ViewCore& core) { return core.view().url(); })
+      .def("watching_url", [](ViewCore& core) { return core.view().watching_url(); })
       .def("step_count", [](ViewCore& core) { return core.view().step_count(); })
       .def("frame_count", [](ViewCore& core) { return core.view().frame_count(); })
       .def("seconds_in_steps", [](ViewCore& core) { return core.view().seconds_in_steps(); })

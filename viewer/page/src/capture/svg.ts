@@ -80,7 +80,7 @@ class Drawing {
 
 /** `overlay` draws over the lines. Throws with a sentence for a view that lines cannot show. */
 export function svgOf(model: Model, plan: SvgPlan, overlay: (pen: Pen) => void): string {
-  if (model.slice !== "off") throw new Error("An SVG cannot show a slice. Choose PNG, or no slice.");
+  if (model.slice.axis !== "off") throw new Error("An SVG cannot show a slice. Choose PNG, or no slice.");
   const { width, height, ground } = plan;
   const objects = model.objects.filter(({ visible }) => visible);
   const places = new Map(objects.map((object) => [object, project(object.positions, plan.matrix, width, height)]));

@@ -3,7 +3,7 @@ import { canvasPen, type Pen, type Text } from "../capture/pen";
 import type { Model } from "../model";
 import { h, remPixels } from "../panels/dom";
 import { colourAt, MAP_COLOURS, type MapName } from "./colour_maps";
-import { rangeOf, readField, tickText } from "./fields";
+import { rangeOf, readField, tickText, titleOf } from "./fields";
 
 export interface Bar {
   /** What the values are, with their unit. */
@@ -31,12 +31,11 @@ export interface BarPlace {
 export function barOf(model: Model): Bar | null {
   const data = readField(model);
   if (!data) return null;
-  const { label, unit, element, vector } = data.form;
+  const { key, element } = data.form;
   const [low, high] = rangeOf(data, model.field);
-  const title = `${label}${vector ? ", length of the vector" : ""}${unit ? ` (${unit})` : ""}`;
   const isEmpty = !(data.lowest <= data.highest);
-  const note = isEmpty ? emptyNote(data.form.key, element) : data.hasGaps && element !== "contact" ? "Without a value: the object’s colour" : "";
-  return { title, map: model.field.map, low, high, note };
+  const note = isEmpty ? emptyNote(key, element) : data.hasGaps && element !== "contact" ? "Without a value: the object’s colour" : "";
+  return { title: titleOf(data.form), map: model.field.map, low, high, note };
 }
 
 function emptyNote(key: string, element: string): string {

@@ -31,6 +31,9 @@ export interface FieldData {
 
 export const COLUMNS = 8;
 
+/** What the numbers of a field are, with their unit. */
+export const titleOf = ({ label, vector, unit }: FieldForm): string => `${label}${vector ? ", length of the vector" : ""}${unit ? ` (${unit})` : ""}`;
+
 /** The length of each vector. */
 function lengthsOf(vectors: Float32Array): Float32Array {
   const lengths = new Float32Array(vectors.length / 3);

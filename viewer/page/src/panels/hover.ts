@@ -1,5 +1,6 @@
 /** What is below the resting pointer: the surface or the mark, with its values in the newest frame. */
 import { hasImpacts, keyAt, kindAt, pointsAt, sidesOf } from "../contacts";
+import { readField, titleOf } from "../fields/fields";
 import type { Model } from "../model";
 import type { Hit } from "../view/picking";
 import type { MarkHit, Pointing } from "../view/pointing";
@@ -107,7 +108,25 @@ export class Hover {
   }
 
   private ofSurface({ object, triangle, vertex, point }: Hit): [string, Line[]] {
-    return [this.nameOf(object), [["triangle", String(triangle)], ["vertex", String(vertex)], ["at", this.placeOf(point)]]];
+    return [this.nameOf(object), [["triangle", String(triangle)], ["vertex", String(vertex)], ["at", this.placeOf(point)], ...this.fieldLines(object, triangle, vertex)]];
+  }
+
+  /** The value of the shown field at the triangle or the nearest vertex. */
+  private fieldLines(object: number, triangle: number, vertex: number): Line[] {
+    const data = readField(this.model);
+    if (!data || data.form.element === "contact") return [];
+    const place = data.form.element === "face" ? triangle : vertex;
+    const value = data.values.get(object)?.[place] ?? NaN;
+    const lines: Line[] = [[titleOf(data.form), Number.isFinite(value) ? rounded(value) : "no value"]];
+    const components = data.vectors.get(object)?.subarray(3 * place, 3 * place + 3);
+    if (components) lines.push([data.form.label, vector(components)]);
+    return lines;
+  }
+
+  /** A name with the unit of a field. */
+  private withUnit(name: string, field: string): string {
+    const unit = this.model.scene!.fields.find(({ key }) => key === field)?.unit;
+    return unit ? `${name} (${unit})` : name;
   }
 
   private ofMark({ kind, place }: MarkHit): [string, Line[]] {
@@ -117,18 +136,18 @@ export class Hover {
       const [a, b] = frame.proximityPairs.subarray(2 * place);
       const row = frame.proximityPoints.subarray(from, from + 8);
       const apart = [0, 1, 2].map((axis) => (row[axis]! - row[4 + axis]!) / (row[3]! || 1));
-      return [`${this.nameOf(a!)} and ${this.nameOf(b!)}`, [["kind", "near"], ["gap", rounded(row[3]!)], ["of margins", `${Math.round(100 * row[7]!)} %`], ["normal", vector(apart)]]];
+      return [`${this.nameOf(a!)} and ${this.nameOf(b!)}`, [["kind", "near"], [this.withUnit("gap", "gap"), rounded(row[3]!)], ["of margins", `${Math.round(100 * row[7]!)} %`], ["normal", vector(apart)]]];
     }
     if (kind === "penetrations") {
       const [a, vertex, b, triangle] = frame.penetrations.subarray(4 * place);
       const row = frame.penetrationPoints.subarray(from, from + 8);
       const out = [0, 1, 2].map((axis) => (row[4 + axis]! - row[axis]!) / (row[3]! || 1));
-      return [`${this.nameOf(a!)} in ${this.nameOf(b!)}`, [["kind", "vertex inside"], ["vertex", String(vertex)], ["triangle", String(triangle)], ["depth", rounded(row[3]!)], ["normal", vector(out)]]];
+      return [`${this.nameOf(a!)} in ${this.nameOf(b!)}`, [["kind", "vertex inside"], ["vertex", String(vertex)], ["triangle", String(triangle)], [this.withUnit("depth", "depth"), rounded(row[3]!)], ["normal", vector(out)]]];
     }
     if (kind === "curves") {
       const [a, b, word] = frame.curves.subarray(from);
       const row = frame.curvePoints.subarray(from, from + 8);
-      return [`${this.nameOf(a!)} and ${this.nameOf(b!)}`, [["kind", `${this.model.scene!.kinds.curve[word!]} curve`], ["depth", rounded(row[3]!)], ["area", rounded(row[7]!)], ["normal", vector(row.subarray(4, 7))]]];
+      return [`${this.nameOf(a!)} and ${this.nameOf(b!)}`, [["kind", `${this.model.scene!.kinds.curve[word!]} curve`], [this.withUnit("depth", "curve_depth"), rounded(row[3]!)], [this.withUnit("area", "curve_area"), rounded(row[7]!)], ["normal", vector(row.subarray(4, 7))]]];
     }
     return this.ofContact(place);
   }

@@ -1,6 +1,7 @@
 /** The user's own program: what it does, the events that pause it, and why it is paused. */
 import type { Client } from "../client";
-import { boundsOf, type Model } from "../model";
+import { boundsOf } from "../bounds";
+import type { Model } from "../model";
 import type { Break, BreakSetting } from "../protocol/messages";
 import { h, readable } from "./dom";
 
@@ -85,7 +86,7 @@ export class Program {
       if (point) this.flyTo(point, this.reachOf(objects));
       else if (objects.length > 0) this.model.select({ object: objects[0]!, triangle: null, vertex: null });
     };
-    const buttons = [h("button", { type: "button", class: "primary", onclick: () => this.client.send({ do: "play" }) }, "Continue")];
+    const buttons = this.client.watches ? [] : [h("button", { type: "button", class: "primary", onclick: () => this.client.send({ do: "play" }) }, "Continue")];
     if (point || objects.length > 0) buttons.unshift(h("button", { type: "button", class: "text-button", onclick: show }, "Show"));
     this.say(`Paused in step ${readable(step)}: ${reason.text}`, buttons);
     if (isNew) show();

@@ -1,6 +1,7 @@
 /** The steps that can be shown, with the events of pairs of objects, and a section that loops. */
 import { OKABE_ITO } from "../colours";
-import { EVENT_LABELS, type Event, type Model } from "../model";
+import { EVENT_LABELS, type Event } from "../history";
+import type { Model } from "../model";
 import { EVENT_KINDS, type EventKind } from "../protocol/messages";
 import { h, readable } from "./dom";
 

@@ -1,5 +1,5 @@
 /** How the scene is drawn: shading, x-ray, a slice, the upward axis. */
-import type { Model } from "../model";
+import type { Model, SliceChoice } from "../model";
 import { MOST_SMOOTH } from "../view/surfaces";
 import { h, readable } from "./dom";
 
@@ -39,21 +39,21 @@ export class ViewOptions {
     const { model } = this;
     const changed = () => model.emit("display", null);
     const axis = h("select", { "aria-label": "Slice", onchange: () => {
-      model.slice = axis.value as Model["slice"];
+      model.slice.axis = axis.value as SliceChoice["axis"];
       changed();
     } }, ...(["off", "x", "y", "z"] as const).map((name) => h("option", { value: name }, name === "off" ? "no slice" : `slice in ${name}`)));
     const at = h("input", { type: "range", min: 0, max: 1, step: "any", "aria-label": "Position of the slice", oninput: () => {
-      model.sliceAt = at.valueAsNumber;
+      model.slice.at = at.valueAsNumber;
       changed();
     } });
     const flip = h("button", { type: "button", class: "link", title: "Remove the other side", onclick: () => {
-      model.sliceFlipped = !model.sliceFlipped;
+      model.slice.flipped = !model.slice.flipped;
       changed();
     } }, "flip");
     this.shown.push(() => {
-      axis.value = model.slice;
-      if (at.valueAsNumber !== model.sliceAt) at.valueAsNumber = model.sliceAt;
-      at.hidden = flip.hidden = model.slice === "off";
+      axis.value = model.slice.axis;
+      if (at.valueAsNumber !== model.slice.at) at.valueAsNumber = model.slice.at;
+      at.hidden = flip.hidden = model.slice.axis === "off";
     });
     return h("span", { class: "slice", title: "Cuts all surfaces open. Closed surfaces have caps, which are red where objects overlap." }, axis, at, flip);
   }

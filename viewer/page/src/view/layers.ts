@@ -2,7 +2,8 @@
 import * as THREE from "three";
 import { GAPS, gapLevel, MARKS } from "../colours";
 import { dotColours, fillArrows, fillDots } from "../fields/marks";
-import { boundsOf, type Model, type ObjectState } from "../model";
+import { boundsOf } from "../bounds";
+import type { Model, ObjectState } from "../model";
 import type { FrameMessage } from "../protocol/messages";
 import { Dots, Lines, type Projection } from "./marks";
 import { Cells, Faces } from "./primitives";

@@ -8,13 +8,14 @@ import { shared } from "./primitives";
 export const LAYOUTS = [1, 2, 4] as const;
 export type Layout = (typeof LAYOUTS)[number];
 
-/** As a view keeps it: the layout, and the cameras of the panes besides the first. */
+/** As a view file keeps it: the layout, and the cameras of the panes besides the first. */
 export interface StoredPanes {
   layout: (typeof LAYOUT_WORDS)[number];
   cameras: Record<string, Partial<CameraState>>;
 }
 const LAYOUT_WORDS = ["one", "two", "four"] as const;
-const CAMERA_NAMES = ["second", "third", "fourth"];
+/** In view files. */
+export const PANE_NAMES = ["first", "second", "third", "fourth"];
 
 /** The directions of the cameras besides the first, until the user turns them. */
 const DIRECTIONS: AxisView[] = ["front", "right", "top"];
@@ -85,6 +86,7 @@ class PaneElement {
 }
 
 export interface Pane {
+  readonly index: number;
   readonly rig: CameraRig;
   area: Area;
   readonly projection: Projection;
@@ -115,7 +117,7 @@ export class Panes {
     const element = new PaneElement(this.canvas, () => pane.area, takes) as unknown as HTMLElement;
     const isFirst = this.all.length === 0;
     const pane: Pane = {
-      area: { left: 0, top: 0, width: 1, height: 1 }, projection: { matrix: new THREE.Matrix4(), version: 0 }, size: new THREE.Vector2(),
+      index: this.all.length, area: { left: 0, top: 0, width: 1, height: 1 }, projection: { matrix: new THREE.Matrix4(), version: 0 }, size: new THREE.Vector2(),
       rig: new CameraRig(element, this.changed, isFirst),
     };
     this.all.push(pane);
@@ -200,13 +202,13 @@ export class Panes {
   }
 
   get stored(): StoredPanes {
-    const cameras = this.all.slice(1).map(({ rig }, i) => [CAMERA_NAMES[i]!, rig.state]);
+    const cameras = this.all.slice(1).map(({ rig }, i) => [PANE_NAMES[1 + i]!, rig.state]);
     return { layout: LAYOUT_WORDS[LAYOUTS.indexOf(this.layout)]!, cameras: Object.fromEntries(cameras) };
   }
 
   /** Applies the cameras of a stored view; its layout comes first. */
   placeCameras(cameras: StoredPanes["cameras"]): void {
-    this.all.slice(1).forEach(({ rig }, i) => (rig.state = { ...rig.state, ...cameras[CAMERA_NAMES[i]!] }));
+    this.all.slice(1).forEach(({ rig }, i) => (rig.state = { ...rig.state, ...cameras[PANE_NAMES[1 + i]!] }));
   }
 }
 

@@ -2,7 +2,8 @@
  * Ray picking. It runs on a click over flat arrays, so no data structure must be kept up to date; it tests
  * the triangles of objects whose bounds the ray meets.
  */
-import { boundsOf, type Bounds, type ObjectState } from "../model";
+import { boundsOf, type Bounds } from "../bounds";
+import type { ObjectState } from "../model";
 
 export interface Hit {
   object: number;

@@ -1,6 +1,7 @@
 /** What is below a point of the window, in the pane that is there; and where a point of the scene is in the window. */
 import * as THREE from "three";
 import { contactCount, hasImpacts, pointsAt } from "../contacts";
+import { readField } from "../fields/fields";
 import type { Layer, Model } from "../model";
 import type { FrameMessage } from "../protocol/messages";
 import type { Pane, Panes } from "./panes";
@@ -34,8 +35,9 @@ export class Pointing {
   }
 
   pickAt(x: number, y: number): Hit | null {
-    const { origin, direction } = this.rayAt(this.panes.at(x, y), x, y);
-    return pick({ origin: origin.toArray(), direction: direction.toArray() }, this.model.objects, (x, y, z) => this.slice.keeps(x, y, z));
+    const pane = this.panes.at(x, y);
+    const { origin, direction } = this.rayAt(pane, x, y);
+    return this.model.inView(pane.index, () => pick({ origin: origin.toArray(), direction: direction.toArray() }, this.model.objects, this.slice.keeps));
   }
 
   /** The point below the cursor, in the plane through `through` that faces the camera of the active pane. */
@@ -60,25 +62,32 @@ export class Pointing {
     return this.nearest(x, y, this.contactPoints())?.place ?? -1;
   }
 
-  /** The mark of a visible layer that is closest to the cursor, or null. */
+  /** The mark of a visible layer, or with a value of the shown field, that is closest to the cursor, or null. */
   markAt(x: number, y: number): MarkHit | null {
     return this.nearest(x, y, [...this.contactPoints(), ...this.otherPoints()]);
   }
 
   private contactPoints(): PointList[] {
     const { frame, layers } = this.model;
-    if (!frame || !layers.points) return [];
+    if (!frame || !(layers.points || this.hasField("impact_points"))) return [];
     return hasImpacts(frame) ? [{ kind: "impacts", data: frame.impactPoints, offset: 0 }] : [{ kind: "contacts", data: frame.contactPoints, offset: 0 }];
+  }
+
+  /** Whether the shown field has its values in a section. */
+  private hasField(section: string): boolean {
+    return readField(this.model)?.form.section === section;
   }
 
   private otherPoints(): PointList[] {
     const { frame, layers } = this.model;
     if (!frame) return [];
-    const lists: (PointList & { layer: Layer })[] = [
-      { layer: "proximity", kind: "proximity", data: frame.proximityPoints, offset: 0 }, { layer: "proximity", kind: "proximity", data: frame.proximityPoints, offset: 4 },
-      { layer: "depths", kind: "penetrations", data: frame.penetrationPoints, offset: 0 }, { layer: "curves", kind: "curves", data: frame.curvePoints, offset: 0 },
+    const lists: (PointList & { layer: Layer; section: string })[] = [
+      { layer: "proximity", section: "proximity_points", kind: "proximity", data: frame.proximityPoints, offset: 0 },
+      { layer: "proximity", section: "proximity_points", kind: "proximity", data: frame.proximityPoints, offset: 4 },
+      { layer: "depths", section: "penetration_points", kind: "penetrations", data: frame.penetrationPoints, offset: 0 },
+      { layer: "curves", section: "curve_points", kind: "curves", data: frame.curvePoints, offset: 0 },
     ];
-    return lists.filter(({ layer }) => layers[layer]);
+    return lists.filter(({ layer, section }) => layers[layer] || this.hasField(section));
   }
 
   private nearest(x: number, y: number, lists: PointList[]): MarkHit | null {
@@ -87,12 +96,13 @@ export class Pointing {
     pane.rig.camera.updateMatrixWorld();
     const matrix = new THREE.Matrix4().multiplyMatrices(pane.rig.camera.projectionMatrix, pane.rig.camera.matrixWorldInverse);
     const at = new THREE.Vector3();
+    const keeps = this.model.inView(pane.index, () => this.slice.keeps);
     let best = REACH;
     let found: MarkHit | null = null;
     for (const { kind, data, offset } of lists)
       for (let from = offset; from < data.length; from += 8) {
         at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
-        if (at.z < -1 || at.z > 1 || !this.slice.keeps(data[from]!, data[from + 1]!, data[from + 2]!)) continue;
+        if (at.z < -1 || at.z > 1 || !keeps(data[from]!, data[from + 1]!, data[from + 2]!)) continue;
         const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
         if (away >= best) continue;
         best = away;

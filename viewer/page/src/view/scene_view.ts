@@ -1,6 +1,7 @@
 /** Draws surfaces, layers and the selection, only when something has changed. */
 import * as THREE from "three";
-import { boundsOf, boundsOfAll, type Bounds, type Model, type ObjectState } from "../model";
+import { boundsOf, boundsOfAll, type Bounds } from "../bounds";
+import type { Model, ObjectState } from "../model";
 import { readField } from "../fields/fields";
 import type { CameraRig } from "./camera";
 import { Highlights } from "./highlights";
@@ -61,6 +62,8 @@ export class SceneView {
   private wasSmooth = true;
   private dirty = true;
   private filled = false;
+  /** The view whose objects the surfaces and the marks show. */
+  private worn = 0;
   private checkMemory = false;
   private hasFramed = false;
   /** True while only `draw` draws, at a fixed size. */
@@ -103,8 +106,12 @@ export class SceneView {
   }
 
   setLayout(layout: Layout): void {
-    const visible = this.model.objects.filter((object) => object.visible);
-    for (const { rig } of this.panes.setLayout(layout)) this.frameObjects(visible, rig, false);
+    const { model, panes } = this;
+    const before = panes.rigs.length;
+    for (let view = before; view < layout; ++view) model.copyView(model.view, view);
+    model.viewCount = layout;
+    for (const { rig, index } of panes.setLayout(layout)) model.inView(index, () => this.frameObjects(model.objects.filter(({ visible }) => visible), rig, false));
+    model.emit("request", null);
     this.invalidate();
   }
 
@@ -240,9 +247,25 @@ export class SceneView {
     if (smooth !== this.wasSmooth) this.surfaces.isSmooth = smooth;
     this.wasSmooth = smooth;
     if (up !== this.world.up) this.placeWorld();
-    this.slice.update(this.surfaces.geometry);
+    this.worn = this.model.view;
     this.shadowIsStale = true;
     this.refill();
+  }
+
+  /** Makes surfaces, marks and the shadow those of the model's view; costs nothing while all views show the same objects. */
+  private wear(): void {
+    const { view, layers, xray } = this.model;
+    if (!this.model.showsSame(this.worn, view)) {
+      this.surfaces.paint(layers, xray ? XRAY_OPACITY : 1);
+      this.shadowIsStale = true;
+      this.filled = false;
+    }
+    this.worn = view;
+    if (!this.filled) this.fill();
+    if (!this.shadowIsStale || !this.world.group.visible) return;
+    this.shadowIsStale = false;
+    this.lowerFloor();
+    this.world.shadow.draw(this.renderer, this.surfaces.casters);
   }
 
   private select(): void {
@@ -359,17 +382,11 @@ export class SceneView {
   /** Draws immediately, so that the canvas can be read in the same task. */
   draw(): void {
     this.dirty = false;
-    if (!this.filled) this.fill();
     this.world.arrange(this.rig.camera);
     this.surfaces.shade(this.model.smooth);
-    if (this.shadowIsStale && this.world.group.visible) {
-      this.shadowIsStale = false;
-      this.lowerFloor();
-      this.world.shadow.draw(this.renderer, this.surfaces.casters);
-    }
     this.drawnInfo = { calls: 0, triangles: 0, points: 0 };
     if (this.panes.shown.length > 1) this.drawLines();
-    for (const pane of this.panes.shown) this.drawPane(pane);
+    for (const pane of this.panes.shown) this.model.inView(pane.index, () => this.drawPane(pane));
     if (this.checkMemory && this.model.frame) {
       this.checkMemory = false;
       const gl = this.renderer.getContext();
@@ -389,6 +406,8 @@ export class SceneView {
   }
 
   private drawPane(pane: Pane): void {
+    this.wear();
+    this.slice.update(this.surfaces.geometry);
     this.panes.begin(pane, this.renderer);
     this.layers.arrange(pane.projection);
     this.highlights.arrange(pane.projection);

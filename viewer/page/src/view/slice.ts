@@ -40,8 +40,7 @@ const CAP_SHADER = `
 
 export class Slice {
   readonly group = new THREE.Group();
-  /** A point p is removed when the dot product of the first three numbers with p is above the last. */
-  readonly plane = shared.slice.value;
+  private readonly plane = shared.slice.value;
   private readonly counters: THREE.Mesh[] = [];
   private readonly caps: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>[] = [];
   private readonly quad = new THREE.Group();
@@ -81,18 +80,28 @@ export class Slice {
     this.isIndexed = false;
   }
 
+  /** Where the view of the model cuts along its axis, or null. */
+  private get cut(): { axis: number; at: number; flipped: boolean } | null {
+    const { slice, scene } = this.model;
+    if (slice.axis === "off" || !scene) return null;
+    const axis = "xyz".indexOf(slice.axis);
+    const [lower, upper] = scene.bounds;
+    return { axis, at: lower[axis]! + slice.at * (upper[axis]! - lower[axis]!), flipped: slice.flipped };
+  }
+
+  /** For the view of the model, which is drawn next. */
   update(surface: THREE.BufferGeometry): void {
-    const { slice, sliceAt, sliceFlipped, scene } = this.model;
-    this.group.visible = slice !== "off" && scene !== null;
-    if (slice === "off" || !scene) {
+    const { cut } = this;
+    this.group.visible = cut !== null;
+    if (!cut) {
       this.plane.copy(NOTHING);
       return;
     }
-    const axis = "xyz".indexOf(slice);
-    const [lower, upper] = scene.bounds;
-    const at = lower[axis]! + sliceAt * (upper[axis]! - lower[axis]!);
-    const normal = new THREE.Vector3().setComponent(axis, sliceFlipped ? -1 : 1);
-    this.plane.set(normal.x, normal.y, normal.z, sliceFlipped ? -at : at);
+    const { axis, at, flipped } = cut;
+    const [lower, upper] = this.model.scene!.bounds;
+    const normal = new THREE.Vector3().setComponent(axis, flipped ? -1 : 1);
+    // A point p is removed when the dot product of the first three numbers with p is above the last.
+    this.plane.set(normal.x, normal.y, normal.z, flipped ? -at : at);
     this.quad.position.set(0, 0, 0).setComponent(axis, at);
     this.quad.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
     this.quad.scale.setScalar(4 * Math.hypot(...upper.map((x, i) => x - lower[i]!)));
@@ -115,9 +124,11 @@ export class Slice {
     for (const counter of this.counters) counter.geometry = geometry;
   }
 
-  /** Whether a point is on the side that is kept. */
-  keeps(x: number, y: number, z: number): boolean {
-    const { x: a, y: b, z: c, w } = this.plane;
-    return a * x + b * y + c * z <= w;
+  /** Whether a point is on the side that the view of the model keeps. */
+  get keeps(): (x: number, y: number, z: number) => boolean {
+    const { cut } = this;
+    if (!cut) return () => true;
+    const { axis, at, flipped } = cut;
+    return (...point) => (flipped ? point[axis]! >= at : point[axis]! <= at);
   }
 }

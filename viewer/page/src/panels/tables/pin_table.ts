@@ -3,7 +3,7 @@ import type { Column } from "../../filter";
 import type { Model } from "../../model";
 import { titleOf, type Pin, type Pins } from "../../pins";
 import { download, h, readable, stamp } from "../dom";
-import { PinPlots } from "./pin_plots";
+import { PinPlots } from "../plots/pin_plots";
 import { makeRow, RowWindow, type Row } from "./row_window";
 import { TableControls } from "./table_controls";
 
@@ -19,6 +19,8 @@ export class PinTable {
   private readonly summary = h("p", { class: "hint", "aria-live": "off" });
   private readonly title = h("h3", {});
   private readonly state = h("p", { class: "hint", role: "status" });
+  /** Of the frames of a recording that the session measures. */
+  private readonly progress = h("progress", { "aria-label": "Frames of the recording that are measured", hidden: true });
   private readonly detail: HTMLElement;
   private readonly empty = h("p", { class: "hint empty" }, "Nothing is pinned. Select an object or a contact and press Pin in Inspect, or ", h("kbd", {}, "Shift"), " ", h("kbd", {}, "I"), "; pin a pair of objects from its row under Contacts.");
   private readonly plots: PinPlots;
@@ -43,7 +45,7 @@ export class PinTable {
       "div", { class: "pin-detail" },
       h("div", { class: "pin-title" }, this.title, h("span", { class: "links" },
         button("show", "Select it and fly to it", (pin) => this.show(pin)), button("save CSV", "All values of all steps that the page has", (pin) => this.save(pin)), button("unpin", "Follow it no longer", (pin) => pins.remove(pin)))),
-      this.state, this.plots.element,
+      this.state, this.progress, this.plots.element,
     );
     this.element = h("div", { class: "contacts pins" }, h("div", { class: "table-top" }, this.controls.field, this.summary), this.controls.refusal, this.controls.head, this.window.element, this.empty, this.detail);
     pins.on("list", (pin) => {
@@ -91,6 +93,12 @@ export class PinTable {
     if (this.title.textContent !== title) this.title.textContent = title;
     const state = this.stateOf(pin);
     if (this.state.textContent !== state) this.state.textContent = state;
+    const frames = this.model.frame?.text.pin_frames;
+    this.progress.hidden = !frames;
+    if (frames) {
+      [this.progress.value, this.progress.max] = frames;
+      this.progress.title = `${readable(frames[0])} of ${readable(frames[1])} frames`;
+    }
     this.plots.show(pin, this.pins.names);
   }
 
@@ -101,11 +109,10 @@ export class PinTable {
     if (gone !== undefined) return `${objects[gone]!.name} was removed.`;
     const contacts = pin.series.columns[0] ?? [];
     const steps = `${readable(contacts.length)} ${contacts.length === 1 ? "step" : "steps"}`;
-    const visits = scene?.source === "recording" ? " A recording has values of the frames that were shown: play it to have all." : "";
     if (contacts.length === 0) return "There are no values yet.";
-    if (pin.objects.length > 1 && contacts.every((count) => !(count > 0))) return `No contact in ${steps}.${visits}`;
-    if (pin.contact && this.present(pin, "contacts") === 0) return `No longer a contact.${visits}`;
-    return `Values of ${steps}.${visits}`;
+    if (pin.objects.length > 1 && contacts.every((count) => !(count > 0))) return `No contact in ${steps}.`;
+    if (pin.contact && this.present(pin, "contacts") === 0) return `No longer a contact.`;
+    return `Values of ${steps}.`;
   }
 
   private showRow(row: HTMLElement, cells: HTMLElement[], index: number): void {

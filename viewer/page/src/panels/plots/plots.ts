@@ -1,12 +1,13 @@
 /** Plots of pairs, contacts and stage times over frames. The cursor marks the current frame. */
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
-import { plotSvg } from "../capture/plot_svg";
-import { linesOf, nounOf, plotsOf, type PlotForm } from "../capture/plots";
-import { OKABE_ITO } from "../colours";
-import { EVENT_LABELS, type Model } from "../model";
-import { EVENT_KINDS, type EventKind } from "../protocol/messages";
-import { colourOf, download, h, readable, remPixels, stamp } from "./dom";
+import { plotSvg } from "../../capture/plot_svg";
+import { linesOf, nounOf, plotsOf, type PlotForm } from "../../capture/plots";
+import { EVENT_LABELS } from "../../history";
+import type { Model } from "../../model";
+import { EVENT_KINDS, type EventKind } from "../../protocol/messages";
+import { colourOf, download, h, readable, remPixels, stamp } from "../dom";
+import { axisLook, CURSOR, markStep, onClick } from "./plot_parts";
 
 const HEIGHT = 132;
 const REDRAW_MILLISECONDS = 150;
@@ -48,10 +49,8 @@ export class Plots {
 
   private add(form: PlotForm): void {
     const { title, columns } = form;
-    const ink = colourOf("--ink-soft");
     const lines = linesOf(this.model, form, colourOf("--ink"));
-    const grid = colourOf("--line");
-    const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, font: `${remPixels() * 0.75}px system-ui` };
+    const axis = axisLook();
     const save = h("button", { type: "button", class: "link", "aria-label": `Save ${title} as SVG`, onclick: () => this.save(form) }, "SVG");
     const holder = h("figure", { "aria-label": title }, h("figcaption", {}, title, " ", save));
     const options: uPlot.Options = {
@@ -59,35 +58,16 @@ export class Plots {
       height: HEIGHT,
       scales: { x: { time: false } },
       legend: { live: false },
-      cursor: { points: { show: false }, drag: { x: false, y: false } },
+      cursor: CURSOR,
       axes: [{ ...axis, size: 1.75 * remPixels() }, { ...axis, size: 3.5 * remPixels() }],
       series: [{ label: "frame" }, ...lines.map(({ label, colour }) => ({ label, stroke: colour, width: 1.5, points: { show: false } }))],
-      hooks: { draw: [(plot) => this.drawCursor(plot)] },
+      hooks: { draw: [(plot) => markStep(plot, this.model.frame?.text.step)] },
     };
     const empty = [[], ...columns.map(() => [])] as unknown as uPlot.AlignedData;
     const plot = new uPlot(options, empty, holder);
-    plot.over.addEventListener("click", () => {
-      const at = plot.cursor.idx;
-      if (at !== null && at !== undefined) this.seek(this.model.history.frames[at]!);
-    });
+    onClick(plot, (row) => this.seek(this.model.history.frames[row]!));
     this.element.append(holder);
     this.plots.push({ form, plot });
-  }
-
-  private drawCursor(plot: uPlot): void {
-    const step = this.model.frame?.text.step;
-    if (step === undefined || this.model.history.frames.length === 0) return;
-    const x = plot.valToPos(step, "x", true);
-    const { left, top, width, height } = plot.bbox;
-    if (x < left || x > left + width) return;
-    plot.ctx.save();
-    plot.ctx.strokeStyle = OKABE_ITO.vermillion;
-    plot.ctx.lineWidth = 1.5 * devicePixelRatio;
-    plot.ctx.beginPath();
-    plot.ctx.moveTo(x, top);
-    plot.ctx.lineTo(x, top + height);
-    plot.ctx.stroke();
-    plot.ctx.restore();
   }
 
   private later(): void {

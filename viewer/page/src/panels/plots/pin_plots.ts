@@ -3,7 +3,8 @@ import uPlot from "uplot";
 import { OKABE_ITO } from "../../colours";
 import type { Model } from "../../model";
 import type { Pin } from "../../pins";
-import { colourOf, h, readable, remPixels } from "../dom";
+import { h, readable, remPixels } from "../dom";
+import { axisLook, CURSOR, markStep, onClick } from "./plot_parts";
 
 const HEIGHT = 92;
 const LINES = [OKABE_ITO.blue, OKABE_ITO.vermillion, OKABE_ITO.green];
@@ -58,31 +59,17 @@ export class PinPlots {
     const { doc, unit } = this.model.scene!.pin_values[columns[0]!]!;
     const caption = h("figcaption", { title: unit ? `${doc} (${unit})` : doc });
     const holder = h("figure", { "aria-label": family.replace(/_/g, " ") }, caption);
-    const grid = { stroke: colourOf("--line"), width: 1 };
-    const axis = { stroke: colourOf("--ink-soft"), grid, ticks: grid, font: `${remPixels() * 0.75}px system-ui` };
+    const axis = axisLook();
     const plot = new uPlot({
       width: Math.max(120, this.element.clientWidth), height: HEIGHT, scales: { x: { time: false }, ...(family === "normal" && { y: { range: [-1, 1] } }) }, legend: { show: false },
-      cursor: { points: { show: false }, drag: { x: false, y: false, click: () => {} } },  // a tap is no drag
+      cursor: CURSOR,
       axes: [{ ...axis, size: 1.75 * remPixels() }, { ...axis, size: 3.5 * remPixels(), space: 1.25 * remPixels() }],
       series: [{ label: "step" }, ...columns.map((column, i) => ({ label: this.names[column]!, stroke: LINES[i]!, width: 1.5, points: { show: (self: uPlot) => self.data[0].length < 3 } }))],
-      hooks: { draw: [(self) => this.drawCursor(self)] },
+      hooks: { draw: [(self) => markStep(self, this.model.frame?.text.step)] },
     }, [[], ...columns.map(() => [])] as unknown as uPlot.AlignedData, holder);
-    plot.over.addEventListener("click", ({ clientX }) => {
-      const step = this.pin?.series.steps[plot.posToIdx(clientX - plot.over.getBoundingClientRect().left)];
-      if (step !== undefined) this.seek(step);
-    });
+    onClick(plot, (row) => this.seek(this.pin!.series.steps[row]!));
     this.element.append(holder);
     this.plots.push({ columns, caption, plot });
-  }
-
-  private drawCursor(plot: uPlot): void {
-    const step = this.model.frame?.text.step;
-    if (step === undefined || !this.pin || this.pin.series.steps.length === 0) return;
-    const x = plot.valToPos(step, "x", true);
-    const { left, top, width, height } = plot.bbox;
-    if (x < left || x > left + width) return;
-    plot.ctx.fillStyle = OKABE_ITO.vermillion;
-    plot.ctx.fillRect(x - 0.75 * devicePixelRatio, top, 1.5 * devicePixelRatio, height);
   }
 
   private update(): void {
