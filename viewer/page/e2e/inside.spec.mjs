@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { camera, coloursAt, goesOn, groundPlace, hasFrame, pause, picture, scenes, seenTriangle, settled, TWO_BALLS, until } from "./tools/harness.mjs";
+import { camera, coloursAt, coloursIn, goesOn, groundPlace, hasFrame, pause, picture, placesOf, scenes, seenTriangle, settled, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const ball = (name, x, more = "") => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 12\ntranslate = [${x}, 0, 0]\n${more}\n`;
 const [CUT, OVERLAP] = [[0x8d, 0x96, 0xa3], [0xc1, 0x12, 0x1f]];
@@ -315,6 +315,7 @@ async function viewsHaveTheirSliceAndObjects(stage) {
   const balls = () => coloursAt(page, middles);
   const isActive = (number) => page.getByRole("img", { name: `3D view, ${number} of 2 is active` }).waitFor();
   const first = await balls();
+  const placesInFirst = await placesOf(page, middles);
   await page.keyboard.press("z");
   await isActive(2);
   await settled(page);
@@ -330,6 +331,7 @@ async function viewsHaveTheirSliceAndObjects(stage) {
   const alone = await balls();
   assert.notDeepEqual(alone[0], cut[0]);
   assert.deepEqual(alone[1], cut[1]);
+  assert.deepEqual(await coloursIn(page, placesInFirst), first, "the first view, which is not active, shows what it showed");
   const pickedIn = () => page.evaluate((middles) => middles.map((middle) => {
     const { x, y } = supple.project(middle);
     return supple.pickAt(x, y)?.object ?? null;

@@ -212,9 +212,15 @@ export const picture = (page) =>
     return document.querySelector("canvas.view").toDataURL();
   });
 
-/** The colours of the picture at points of the scene. */
-export const coloursAt = (page, points) =>
-  page.evaluate((points) => {
+/** Where the active view shows points of the scene, in the window. */
+export const placesOf = (page, points) => page.evaluate((points) => points.map((point) => supple.project(point)), points);
+
+/** The colours of the picture at points of the scene, in the active view. */
+export const coloursAt = async (page, points) => coloursIn(page, await placesOf(page, points));
+
+/** The colours of the picture at places of the window. */
+export const coloursIn = (page, places) =>
+  page.evaluate((places) => {
     supple.draw();  // the canvas keeps its content only until the end of this task
     const view = document.querySelector("canvas.view");
     const copy = Object.assign(document.createElement("canvas"), { width: view.width, height: view.height });
@@ -222,11 +228,8 @@ export const coloursAt = (page, points) =>
     context.drawImage(view, 0, 0);
     const frame = view.getBoundingClientRect();
     const scale = view.width / frame.width;
-    return points.map((point) => {
-      const { x, y } = supple.project(point);
-      return [...context.getImageData(Math.round((x - frame.left) * scale), Math.round((y - frame.top) * scale), 1, 1).data].slice(0, 3);
-    });
-  }, points);
+    return places.map(({ x, y }) => [...context.getImageData(Math.round((x - frame.left) * scale), Math.round((y - frame.top) * scale), 1, 1).data].slice(0, 3));
+  }, places);
 
 /** A position to click that hits a visible triangle not lower than `least`. */
 export const seenTriangle = (page, object, least = -Infinity) =>
