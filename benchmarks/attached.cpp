@@ -1,7 +1,7 @@
 // How much a page slows a program down: steps with `viewer::attach` and a page that takes every frame as soon
 // as it can, divided by steps without. Both take turns in one run.
 //
-//   supple_attached [ROUNDS] [STEPS]: steps of each turn; prints a line for each workload
+//   supple_attached [ROUNDS] [STEPS] [MAX_SLOWDOWN]: steps of each turn; prints a line for each workload
 #include <algorithm>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
@@ -79,15 +79,16 @@ double seconds_of(Workload& workload, int steps) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-void measure(Workload& workload, int rounds, int steps) {
+void measure(Workload& workload, int rounds, int steps, double max_slowdown) {
   seconds_of(workload, steps);  // takes memory
-  std::vector<double> ratios, frames;
+  std::vector<double> ratios, frames, waits;
   double alone = 0;
   for (int round = 0; round < rounds; ++round) {
     const auto attached = [&] {
-      viewer::View view = viewer::attach(workload.scene, {.open_browser = false});
+      viewer::View view = viewer::attach(workload.scene, {.open_browser = false, .max_slowdown = max_slowdown});
       std::optional<Page> page(view.url());
       const double seconds = seconds_of(workload, steps);
+      waits.push_back(view.seconds_in_steps() / seconds);
       frames.push_back(static_cast<double>(view.frame_count()) / seconds);
       view.close();
       page.reset();
@@ -102,9 +103,11 @@ void measure(Workload& workload, int rounds, int steps) {
   }
   std::sort(ratios.begin(), ratios.end());
   std::sort(frames.begin(), frames.end());
-  std::printf("%-28s %7.2f ms a step, attached: %.3f of it (from %.3f to %.3f), %.0f frames a second\n",
+  std::sort(waits.begin(), waits.end());
+  std::printf("%-28s %7.2f ms a step, attached: %.3f of it (from %.3f to %.3f), of which it waits %.3f, "
+              "%.0f frames a second\n",
               workload.name.c_str(), 1e3 * alone / rounds / steps, ratios[ratios.size() / 2], ratios.front(),
-              ratios.back(), frames[frames.size() / 2]);
+              ratios.back(), waits[waits.size() / 2], frames[frames.size() / 2]);
 }
 
 Workload deforming_spheres() {
@@ -137,8 +140,9 @@ Workload crumpled_cloth() {
 int main(int argc, char** argv) {
   using namespace supple::benchmarks;
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 9, steps = argc > 2 ? std::atoi(argv[2]) : 200;
+  const double max_slowdown = argc > 3 ? std::atof(argv[3]) : supple::viewer::AttachOptions{}.max_slowdown;
   for (const auto& make : {deforming_spheres, crumpled_cloth}) {
     Workload workload = make();
-    measure(workload, rounds, steps);
+    measure(workload, rounds, steps, max_slowdown);
   }
 }
