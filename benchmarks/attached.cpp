@@ -85,7 +85,8 @@ void measure(Workload& workload, int rounds, int steps, double max_slowdown) {
   double alone = 0;
   for (int round = 0; round < rounds; ++round) {
     const auto attached = [&] {
-      viewer::View view = viewer::attach(workload.scene, {.open_browser = false, .max_slowdown = max_slowdown});
+      viewer::View view =
+          viewer::attach(workload.scene, {.open_browser = false, .max_slowdown = max_slowdown});
       std::optional<Page> page(view.url());
       const double seconds = seconds_of(workload, steps);
       waits.push_back(view.seconds_in_steps() / seconds);
@@ -104,10 +105,11 @@ void measure(Workload& workload, int rounds, int steps, double max_slowdown) {
   std::sort(ratios.begin(), ratios.end());
   std::sort(frames.begin(), frames.end());
   std::sort(waits.begin(), waits.end());
-  std::printf("%-28s %7.2f ms a step, attached: %.3f of it (from %.3f to %.3f), of which it waits %.3f, "
-              "%.0f frames a second\n",
-              workload.name.c_str(), 1e3 * alone / rounds / steps, ratios[ratios.size() / 2], ratios.front(),
-              ratios.back(), waits[waits.size() / 2], frames[frames.size() / 2]);
+  std::printf(
+      "%-28s %7.2f ms a step, attached: %.3f of it (from %.3f to %.3f), of which it waits %.3f, "
+      "%.0f frames a second\n",
+      workload.name.c_str(), 1e3 * alone / rounds / steps, ratios[ratios.size() / 2], ratios.front(),
+      ratios.back(), waits[waits.size() / 2], frames[frames.size() / 2]);
 }
 
 Workload deforming_spheres() {

@@ -13,9 +13,9 @@ using namespace std::chrono_literals;
 
 /// Steps whose statistics wait for the session.
 constexpr std::ptrdiff_t most_rows = 4096;
-/// The part of the budget in which the program waits. The rest is for what nobody waits for: the threads of the
-/// session and of the network take cores and caches from the program, about as much as it waits where it uses
-/// all cores (benchmarks/attached.cpp).
+/// The part of the budget in which the program waits. The rest is for what nobody waits for: the threads of
+/// the session and of the network take cores and caches from the program, about as much as it waits where it
+/// uses all cores (benchmarks/attached.cpp).
 constexpr double waiting_part = 0.5;
 /// How often a pause looks for a requested stop. A signal handler may request it, so no callback can.
 constexpr auto between_looks = 50ms;
