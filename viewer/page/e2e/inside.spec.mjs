@@ -97,7 +97,7 @@ async function surfaceShowsItsValues(stage) {
   const corners = await page.evaluate(({ object, triangle }) => [...supple.model.objects[object].corners.subarray(3 * triangle, 3 * triangle + 3)].map(String), seen);
   assert.ok(corners.includes(await row(page, "vertex")));
   const middle = await page.evaluate(({ object, triangle }) => supple.centroid(object, triangle).map((x, i) => x + supple.model.scene.center[i]), seen);
-  (await row(page, "at")).split(", ").map(Number).forEach((x, i) => assert.ok(Math.abs(x - middle[i]) < 0.01, `${x} is not ${middle[i]}`));
+  (await row(page, "at")).split(", ").map(Number).forEach((x, i) => assert.ok(Math.abs(x - middle[i]) < 0.05, `${x} is not near ${middle[i]}`));
   const box = await tooltip(page).boundingBox();
   assert.ok(box.x > seen.x && box.y > seen.y, "it covers what it describes");
   const ground = await groundPlace(page);

@@ -305,7 +305,7 @@ export class App {
     showLooks(model, view);
     model.emit("display", null);
     model.emit("request", null);
-    if (view.pins && !this.job) this.pins.restore(view.pins);  // pictures have none
+    if (view.pins && this.job?.plot !== null) this.pins.restore(view.pins);  // pictures have none, plots have
     this.showProjection();
     if (view.tab) this.openTab(view.tab);
     if (view.panels !== undefined) this.body.classList.toggle("bare", !view.panels);

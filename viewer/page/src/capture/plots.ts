@@ -110,7 +110,7 @@ export async function takePlot(model: Model, client: Client, pins: Pins, plan: P
   const { signal } = new AbortController();
   await client.ask({ do: "pause" });
   let at = await client.frameThat((frame) => !frame.playing, signal);
-  // A recording has the numbers of all frames, but the values of pins only of those that were shown.
+  // The numbers of a recording come with its scene; the values of pins come with each frame.
   if (count === null || isOfPins)
     for (let frame = first; frame <= last; frame += every) {
       if (at.step !== frame) at = await goTo(model, client, frame, signal);

@@ -63,7 +63,7 @@ export class SceneView {
   private dirty = true;
   private filled = false;
   /** The view whose objects the surfaces and the marks show. */
-  private worn = 0;
+  private preparedView = 0;
   private checkMemory = false;
   private hasFramed = false;
   /** True while only `draw` draws, at a fixed size. */
@@ -247,20 +247,20 @@ export class SceneView {
     if (smooth !== this.wasSmooth) this.surfaces.isSmooth = smooth;
     this.wasSmooth = smooth;
     if (up !== this.world.up) this.placeWorld();
-    this.worn = this.model.view;
+    this.preparedView = this.model.view;
     this.shadowIsStale = true;
     this.refill();
   }
 
   /** Makes surfaces, marks and the shadow those of the model's view; costs nothing while all views show the same objects. */
-  private wear(): void {
+  private prepare(): void {
     const { view, layers, xray } = this.model;
-    if (!this.model.showsSame(this.worn, view)) {
+    if (!this.model.showsSame(this.preparedView, view)) {
       this.surfaces.paint(layers, xray ? XRAY_OPACITY : 1);
       this.shadowIsStale = true;
       this.filled = false;
     }
-    this.worn = view;
+    this.preparedView = view;
     if (!this.filled) this.fill();
     if (!this.shadowIsStale || !this.world.group.visible) return;
     this.shadowIsStale = false;
@@ -406,7 +406,7 @@ export class SceneView {
   }
 
   private drawPane(pane: Pane): void {
-    this.wear();
+    this.prepare();
     this.slice.update(this.surfaces.geometry);
     this.panes.begin(pane, this.renderer);
     this.layers.arrange(pane.projection);
