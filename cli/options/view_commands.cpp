@@ -104,9 +104,8 @@ CLI::Option* add_plot(CLI::App& app, RenderOptions& options) {
   return add_words(
       app, "--plot", words, [&options](std::size_t place) { options.plot = names[place]; },
       "Draw a plot over the frames instead of the scene: pairs of objects, contacts, times of the stages, or "
-      "a "
-      "value of the pins in the view file. A simulation needs --frames. Of a recording, pins have the values "
-      "of "
+      "a value of the pins in the view file. A simulation needs --frames. Of a recording, pins have the "
+      "values of "
       "these frames");
 }
 
