@@ -1,8 +1,8 @@
 // End-to-end tests of the viewer: they start the program and click, drag and type in a page in Chromium.
 //
-// usage: node e2e/run.mjs [--firefox] [--size 1440|800|390] [--theme dark|light] PATH/TO/supple [WORDS OF A TEST'S NAME]
+// usage: node e2e/run.mjs [--firefox] [--slow] [--size 1440|800|390] [--theme dark|light] PATH/TO/supple [WORDS OF A TEST'S NAME]
 //
-// Without --size and --theme each test has a size and a theme that follow from its name. With --firefox the tests
+// With --slow the scripts of the page take eight times as long, so that tests that depend on its pace fail. Without --size and --theme each test has a size and a theme that follow from its name. With --firefox the tests
 // of the main path run in Firefox, which has WebGL only with a screen: without one, a virtual screen (Xvfb).
 // Exits with 77, which CTest reports as skipped, when there is no browser or no screen.
 import { spawnSync } from "node:child_process";
@@ -30,12 +30,12 @@ const MAIN_PATH = [
   "page: views survive a reload", "live: a spectator sees the same and controls nothing",
 ];
 
-const USAGE = "usage: node e2e/run.mjs [--firefox] [--size 1440|800|390] [--theme dark|light] PATH/TO/supple [WORDS OF A TEST'S NAME]";
+const USAGE = "usage: node e2e/run.mjs [--firefox] [--slow] [--size 1440|800|390] [--theme dark|light] PATH/TO/supple [WORDS OF A TEST'S NAME]";
 
 /** The options and arguments; undefined when one is wrong. */
 function readArguments() {
   try {
-    const { values, positionals } = parseArgs({ allowPositionals: true, options: { firefox: { type: "boolean" }, size: { type: "string" }, theme: { type: "string" } } });
+    const { values, positionals } = parseArgs({ allowPositionals: true, options: { firefox: { type: "boolean" }, slow: { type: "boolean" }, size: { type: "string" }, theme: { type: "string" } } });
     const isKnown = (value, known) => value === undefined || known.includes(value);
     const [program] = positionals;
     if (isKnown(values.size, Object.keys(SIZES)) && isKnown(values.theme, THEMES) && program && existsSync(program)) return { ...values, positionals };
@@ -77,8 +77,8 @@ async function loadTests() {
 }
 
 async function runTest({ name, body }, browser) {
-  const { size, theme } = { ...windowOf(name), ...chosen };
-  const stage = new Stage(resolve(program), browser, COARSE, { size, theme });
+  const { size, theme, slow } = { ...windowOf(name), ...chosen };
+  const stage = new Stage(resolve(program), browser, COARSE, { size, theme, slow });
   let timer;
   const tooLong = new Promise((_, fail) => (timer = setTimeout(() => fail(new Error("it takes too long")), TEST_MILLISECONDS)));
   const begin = Date.now();

@@ -10,6 +10,8 @@ export const repository = resolve(dirname(fileURLToPath(import.meta.url)), "../.
 export const scenes = join(repository, "scenes");
 
 const START_MILLISECONDS = 120_000;
+/** Of the scripts of a page, with --slow. */
+const SLOWDOWN = 8;
 
 /** A running `supple view`. */
 export class Program {
@@ -93,12 +95,13 @@ export const COARSE = { deviceScaleFactor: 0.5, antialias: false };
 
 /** Everything that one test needs; cleans up after it. `options` are those of its pages, which have a size and a theme. */
 export class Stage {
-  constructor(supple, browser, options = {}, { size = "1280", theme = "dark" } = {}) {
+  constructor(supple, browser, options = {}, { size = "1280", theme = "dark", slow = false } = {}) {
     this.supple = supple;
     this.browser = browser;
     this.options = { ...options, colorScheme: theme };
     this.window = { ...(SIZES[size] ?? { viewport: { width: 1280, height: 800 } }) };
     if (browser?.browserType().name() !== "chromium") delete this.window.hasTouch;  // the harness has no finger there
+    this.slow = slow && browser?.browserType().name() === "chromium";
     this.folder = mkdtempSync(join(tmpdir(), "supple-e2e-"));
     this.programs = [];
     this.contexts = [];
@@ -129,6 +132,7 @@ export class Stage {
     if (!antialias) await context.addInitScript(drawWithoutAntialiasing);
     const page = await context.newPage();
     page.setDefaultTimeout(120_000);  // ends a test that hangs; a busy machine needs long
+    if (this.slow) await (await context.newCDPSession(page)).send("Emulation.setCPUThrottlingRate", { rate: SLOWDOWN });
     page.on("pageerror", (error) => this.errors.push(error.message));
     if (!options.viewport) reachDrawers(page, others.hasTouch ?? false);
     return page;
