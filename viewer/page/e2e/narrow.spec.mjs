@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
-import { pause, scenes, settled, until } from "./tools/harness.mjs";
+import { hasFrame, pause, scenes, settled, until } from "./tools/harness.mjs";
+import { SIZES } from "./tools/sizes.mjs";
 
 const nine = join(scenes, "nine.toml");
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -208,7 +209,54 @@ async function accessible(stage) {
   }
 }
 
+/** Buttons, lists and fields that have been at more than one place until the condition holds. */
+const movedUntil = (page, condition) =>
+  page.evaluate(async (condition) => {
+    const places = new Map();
+    const holds = new Function(`return (${condition})()`);
+    for (let last = false; !last; ) {
+      last = holds();
+      for (const element of document.querySelectorAll("button, select, input")) {
+        if (!element.checkVisibility({ visibilityProperty: true })) continue;
+        const { x, y } = element.getBoundingClientRect();
+        if (!places.has(element)) places.set(element, new Set());
+        places.get(element).add(`${Math.round(x)}, ${Math.round(y)}`);
+      }
+      await new Promise((done) => requestAnimationFrame(done));
+    }
+    const nameOf = (element) => element.getAttribute("aria-label") ?? element.closest("label")?.textContent ?? element.textContent;
+    return [...places].filter(([, { size }]) => size > 1).map(([element, seen]) => `${nameOf(element)}: ${[...seen].join(" ")}`);
+  }, String(condition));
+
+/** A finger that aims at a button meets it: texts that change move no control. */
+async function controlsStay(stage) {
+  for (const size of Object.values(SIZES)) {
+    const program = await stage.program(join(scenes, "fish_tank.toml"));  // gaps and contacts begin and end
+    const page = await stage.page(size);
+    await page.goto(program.address);
+    await hasFrame(page);
+    const drawer = page.getByRole("button", { name: "Scene", exact: true });
+    if (await drawer.isVisible()) await drawer.click();
+    await page.evaluate(() => {
+      window.first = supple.model.frame.text.step;
+      supple.client.send({ do: "play" });
+    });
+    const moved = await movedUntil(page, () => supple.model.frame.text.step > first + 15 && document.querySelector(".rate").textContent !== "");
+    await page.evaluate(() => {
+      window.looks = 0;
+      supple.client.send({ do: "seek", frame: 0 });
+      supple.client.send({ do: "loop", on: true, from: 0, to: 5 });
+      supple.client.send({ do: "play" });
+      supple.model.on("frame", ({ text }) => (looks += text.past ? 1 : 0));
+    });
+    moved.push(...(await movedUntil(page, () => looks > 8)));
+    assert.deepEqual(moved, [], `${size.viewport.width} pixels`);
+    await program.stop();
+  }
+}
+
 export const tests = [
+  ["controls stay where they are while it plays", controlsStay],
   ["everything is reached at 800 and 390 pixels by touch", bySizes],
   ["everything is reached at 400 % zoom by touch", byZoom],
   ["everything is reached at 390 pixels by keys", byKeys],

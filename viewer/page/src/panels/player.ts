@@ -48,7 +48,8 @@ export class Player {
     this.seed.addEventListener("change", () => this.reset());
     this.element = h(
       "footer", { class: "player", "aria-label": "Player", role: "toolbar" },
-      first, previous, back, this.play, forward, next, last, timeline.kinds, this.loop, timeline.section, this.reset_, seed, this.speeds, timeline.element, timeline.named, this.newest, this.place, this.rate,
+      first, previous, back, this.play, forward, next, last, timeline.kinds, this.loop, timeline.section, this.reset_, seed, this.speeds, timeline.element,
+      h("div", { class: "readout" }, timeline.named, this.newest, this.place, this.rate),
     );
     model.on("scene", () => this.build());
     model.on("frame", (frame) => this.show(frame.text));
@@ -59,6 +60,11 @@ export class Player {
   private get canSeek(): boolean {
     const [first, last] = this.model.range;
     return this.model.moves && last > first;
+  }
+
+  /** Whether there are steps to go to, or will be: then the bar has the controls from the start, and none moves later. */
+  private get keepsSteps(): boolean {
+    return this.canSeek || (this.model.moves && this.model.history.frames.length < 2);
   }
 
   private build(): void {
@@ -78,8 +84,7 @@ export class Player {
   }
 
   private fitTimeline(): void {
-    for (const element of this.seekable) element.hidden = !this.canSeek;
-    this.element.classList.toggle("seekable", this.canSeek);
+    for (const element of this.seekable) element.hidden = !this.keepsSteps;
   }
 
   /** Meshes at rest need no player, unless they were pulled: then only a reset brings them back. */
@@ -95,7 +100,7 @@ export class Player {
     this.speed = text.speed;
     if (document.activeElement !== this.speeds) this.speeds.value = String(this.speed);
     if (text.loop !== undefined) this.setLooping(text.loop);
-    if (this.seekable[0]!.hidden === this.canSeek) this.fitTimeline();
+    if (this.seekable[0]!.hidden === this.keepsSteps) this.fitTimeline();
     this.timeline.show(text.section, text.loop === true);
     const { slider } = this.timeline;
     // Not every step of a program is kept.

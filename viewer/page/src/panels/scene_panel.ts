@@ -98,13 +98,13 @@ export class ScenePanel {
     this.sortRows();
   }
 
-  /** Whether the scene fills a layer. Of several kinds of contacts, those that have not occurred yet do not count. */
+  /** Whether the scene fills a layer. Beside kinds that were asked for, intersections count only when they have occurred. */
   private isProduced({ layer, kinds, has }: LayerRow): boolean {
     const { frame, scene } = this.model;
     if (frame && has && has(frame) > 0) this.seen.add(layer);
     if (!has || this.seen.has(layer)) return true;
     const asked = scene?.contacts.split(",") ?? [];
-    return kinds !== undefined && asked.length === 1 && kinds.includes(asked[0]!);
+    return asked.some((kind) => kinds?.includes(kind) && (kind !== "intersection" || asked.length === 1));
   }
 
   /** Moves the rows of layers that the scene does not produce to “More layers”. */

@@ -18,7 +18,7 @@ export class Timeline {
   readonly slider = h("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Timeline", oninput: () => this.onScrub(this.slider.valueAsNumber) });
   /** The events at the pointer, or those of the last jump. */
   readonly named = h("output", { class: "named", "aria-label": "Event" });
-  readonly section = h("button", { type: "button", class: "text-button", onclick: () => this.markSection() });
+  readonly section = h("button", { type: "button", class: "text-button section", onclick: () => this.markSection() });
   readonly element: HTMLElement;
   onScrub: (step: number) => void = () => {};
   /** The ends of a section to loop; null when it no longer loops. */

@@ -1,4 +1,4 @@
-/** One line: what touches in this frame. */
+/** What touches in this frame. Its height is that of the longest text, so that nothing below it moves. */
 import { Beginnings, isHit, isTouching, pairsOf, type TouchingPair } from "../contacts";
 import type { Model } from "../model";
 import { h, readable } from "./dom";
@@ -10,6 +10,7 @@ export class TouchLine {
   private readonly beginnings = new Beginnings();
 
   constructor(private readonly model: Model) {
+    model.on("scene", ({ contacts }) => this.element.style.setProperty("--lines", String(Math.max(2, contacts.split(",").length))));
     model.on("frame", () => this.update());
   }
 
