@@ -285,6 +285,10 @@ class Render(ProgramTest):
         done = self.run_here("render", scene, "--size", "80x60", "--frames", "0-5000", "-o", "%d.png")
         self.assert_one_line_error(done, "The session has failed", "of 5,001 pictures are saved")
         self.assertTrue((self.folder / "0.png").exists())
+        done = self.run_here("render", scene, "--frames", "0-5000", "--plot", "pairs", "-o", "pairs.svg")
+        self.assert_one_line_error(done, "The session has failed", "; the plot ends at step ")
+        last = int(done.error.split()[-1])
+        self.assertEqual(self.labels("pairs.svg")[1], [last + 1])
 
     def start(self):
         scene = self.write("scene.toml", BODY)

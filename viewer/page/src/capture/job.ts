@@ -39,9 +39,9 @@ export async function runJob(job: Job, step: number, model: Model, client: Clien
   try {
     if (job.plot !== null) {
       const plan = { ...job, name: job.plot, size: figure.size };
-      const plot = await takePlot(model, client, pins, plan, (step) => client.deliver({ kind: "step", step }));
+      const { plot, failure } = await takePlot(model, client, pins, plan, (step) => client.deliver({ kind: "step", step }));
       await client.deliver({ kind: "picture", step: last }, plot);
-      return await client.deliver({ kind: "end" });
+      return await (failure === null ? client.deliver({ kind: "end" }) : failJob(client, failure));
     }
     const plan = { first, count: Math.floor((last - first) / every) + 1, every, figure };
     await takeFrames(model, client, view, plan, new AbortController().signal, (picture, at) => client.deliver({ kind: "picture", step: at.step }, picture));

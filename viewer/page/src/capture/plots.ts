@@ -99,8 +99,11 @@ async function drawn(svg: Blob, { size: { width, height }, dpi }: PlotPlan): Pro
   return withResolution(await encode(canvas), dpi);
 }
 
-/** Runs through the frames of a plan and returns their plot. `progress` gets each frame. Throws a sentence as `takeFrames` does. */
-export async function takePlot(model: Model, client: Client, pins: Pins, plan: PlotPlan, progress: (step: number) => Promise<void>): Promise<Blob> {
+/**
+ * Runs through the frames of a plan and draws their plot. `progress` gets each frame. When the session fails on the
+ * way, the plot ends there, and `failure` says why. Throws a sentence when there is nothing to draw.
+ */
+export async function takePlot(model: Model, client: Client, pins: Pins, plan: PlotPlan, progress: (step: number) => Promise<void>): Promise<{ plot: Blob; failure: string | null }> {
   const { name, size: { width, height }, dpi, format } = plan;
   const isOfPins = name.startsWith(PIN);
   if (isOfPins && pins.list.length === 0) throw new Error("The view file has no pin of an object of this scene.");
@@ -110,11 +113,17 @@ export async function takePlot(model: Model, client: Client, pins: Pins, plan: P
   const { signal } = new AbortController();
   await client.ask({ do: "pause" });
   let at = await client.frameThat((frame) => !frame.playing, signal);
+  let failure: string | null = null;
   // The numbers of a recording come with its scene; the values of pins come with each frame.
   if (count === null || isOfPins)
-    for (let frame = first; frame <= last; frame += every) {
-      if (at.step !== frame) at = await goTo(model, client, frame, signal);
-      await progress(frame);
+    try {
+      for (let frame = first; frame <= last; frame += every) {
+        if (at.step !== frame) at = await goTo(model, client, frame, signal);
+        await progress(frame);
+      }
+    } catch (error) {
+      if (at.step <= first) throw error;
+      failure = `${(error as Error).message.replace(/\.$/, "")}; the plot ends at ${nounOf(model)} ${at.step}`;
     }
   const { title, frames, lines } = curvesOf(model, pins, name);
   const kept = frames.flatMap((frame, i) => (frame >= first && frame <= last && (frame - first) % every === 0 ? [i] : []));
@@ -123,5 +132,5 @@ export async function takePlot(model: Model, client: Client, pins: Pins, plan: P
   const scale = CSS_DPI / dpi;
   const svg = plotSvg(title, nounOf(model), kept.map((i) => frames[i]!), shown, { width: width * scale, height: height * scale, millimetres: millimetresOf(width, dpi) });
   const file = new Blob([svg], { type: "image/svg+xml" });
-  return format === "svg" ? file : drawn(file, plan);
+  return { plot: format === "svg" ? file : await drawn(file, plan), failure };
 }
