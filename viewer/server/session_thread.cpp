@@ -42,6 +42,7 @@ void SessionThread::page_left(PageNumber page) {
     const std::lock_guard lock(mutex_);
     if (page_ != page) return;
     page_ = 0;
+    inbox_.has_left = true;
     has_work_ = true;
   }
   work_.notify_one();
@@ -108,6 +109,7 @@ bool SessionThread::wait_for_work(double seconds) {
     work_.wait_for(lock, std::chrono::duration<double>(seconds), is_awake);
   has_work_ = false;
   taken_.page.reset();
+  taken_.has_left = false;
   taken_.commands.clear();
   taken_.bytes = 0;
   std::swap(taken_, inbox_);
@@ -117,6 +119,7 @@ bool SessionThread::wait_for_work(double seconds) {
 void SessionThread::take_commands() {
   if (taken_.page) {
     greeted_ = *taken_.page;
+    if (taken_.has_left) session_.leave();
     session_.greet();
     // The last message may still be in transit to the previous page, so its memory is not reused.
     message_ = std::make_shared<MessageWriter>();

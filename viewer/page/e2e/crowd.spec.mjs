@@ -98,6 +98,7 @@ async function isHiddenAfterScrolling(stage) {
   for (const other of [wanted - 1, wanted + 1, wanted + COLUMNS]) assert.ok(!isNear(await colourOf(page, other), await ground(page)), `${other} is gone too`);
   assert.notEqual(await picture(page), seen);
   await page.locator(".objects").evaluate((box) => box.scrollTo(0, 0));
+  await list(page).locator('[aria-posinset="1"]').waitFor();
   await page.locator(".objects").evaluate((box, part) => box.scrollTo(0, part * box.scrollHeight), wanted / (COLUMNS * ROWS));
   assert.equal(await box.isChecked(), false, "the row has forgotten it");
   await box.check();
@@ -154,7 +155,7 @@ async function isPickedAndListed(stage) {
   const { x, y } = await look(page, wanted);
   const before = await colourOf(page, wanted);
   await page.mouse.click(x, y);
-  assert.equal(await page.evaluate(() => supple.model.selection?.object), wanted);
+  await until(page, (wanted) => supple.model.selection?.object === wanted, wanted);
   await isShownAsSelected(page, name);
   assert.notDeepEqual(await colourOf(page, wanted), before, "it does not glow");
   // Continue with keys, beyond the visible rows.

@@ -1,8 +1,8 @@
 // Fields: numbers and vectors as colours and arrows, with a colour bar.
 import assert from "node:assert/strict";
-import { coloursAt, counts, pause, picture, seenTriangle, settled, until } from "./tools/harness.mjs";
+import { atStep, coloursAt, counts, isAt, picture, seenTriangle, settled, steps, until } from "./tools/harness.mjs";
 
-/** A cube that moves 5 in a second, and a ball at rest. */
+/** A cube that moves 5 in a second, and a ball at rest. Tests begin at step 0: soon the cube is out of sight. */
 const MOVING_CUBE = `
 [scene]
 time_step = 0.1
@@ -32,14 +32,6 @@ const bar = (page) => page.getByRole("img", { name: /^Colour bar/ });
 const barText = (page) => bar(page).getAttribute("aria-label");
 const choose = (page, name, option) => page.getByRole("combobox", { name, exact: true }).selectOption({ label: option });
 
-/** Takes steps and waits until they are drawn. */
-async function steps(page, count) {
-  const from = await page.evaluate(() => supple.model.frame.text.step);
-  await page.evaluate((count) => supple.client.ask({ do: "step", count }), count);
-  await until(page, (at) => supple.model.frame.text.step === at, from + count);
-  await settled(page);
-}
-
 const centre = (page, object) => page.evaluate((object) => {
   const { positions } = supple.model.objects[object];
   return [0, 1, 2].map((axis) => {
@@ -56,8 +48,7 @@ function isNear([r, g, b], [x, y, z], what) {
 }
 
 async function colours(stage) {
-  const { page } = await stage.view(stage.file("cube.toml", MOVING_CUBE));
-  await pause(page);
+  const { page } = await stage.viewAt(0, stage.file("cube.toml", MOVING_CUBE));
   assert.equal(await bar(page).isVisible(), false);
   const { calls } = await page.evaluate(() => (supple.draw(), supple.drawn()));
   await page.getByRole("checkbox", { name: "Proximity pairs" }).uncheck();
@@ -89,8 +80,7 @@ async function colours(stage) {
 }
 
 async function ranges(stage) {
-  const { page } = await stage.view(stage.file("cube.toml", MOVING_CUBE));
-  await pause(page);
+  const { page } = await stage.viewAt(0, stage.file("cube.toml", MOVING_CUBE));
   await choose(page, "Field", "Speed");
   await steps(page, 1);
   const [low, high] = ["Lowest", "Highest"].map((end) => page.getByRole("textbox", { name: `${end} value` }));
@@ -117,7 +107,7 @@ async function ranges(stage) {
   await steps(page, 1);
   assert.match(await barText(page), /from -5 to 10/, "a step changes no locked range");
   await page.reload();
-  await until(page, () => supple?.model.frame?.text.field === "speed");
+  await until(page, () => window.supple?.model.frame?.text.field === "speed");
   assert.equal(await barText(page), "Colour bar: Speed (length/s) from -5 to 10, cividis.");
   await page.getByRole("checkbox", { name: "Lock range" }).uncheck();
   await steps(page, 1);
@@ -126,8 +116,7 @@ async function ranges(stage) {
 
 /** Each triangle has the colour of its own value. */
 async function faces(stage) {
-  const { page } = await stage.view(stage.file("sway.toml", SWAYING));
-  await pause(page);
+  const { page } = await stage.viewAt(0, stage.file("sway.toml", SWAYING));
   const { calls } = await page.evaluate(() => (supple.draw(), supple.drawn()));
   await choose(page, "Field", "Strain");
   await choose(page, "Colour map", "coolwarm (0 in the middle)");
@@ -151,8 +140,7 @@ async function faces(stage) {
 }
 
 async function arrowsAndDots(stage) {
-  const { page } = await stage.view(stage.file("cube.toml", MOVING_CUBE));
-  await pause(page);
+  const { page } = await stage.viewAt(0, stage.file("cube.toml", MOVING_CUBE));
   await choose(page, "Field", "Velocity");
   assert.equal(await page.getByRole("slider", { name: "Length of the longest arrow" }).isVisible(), true);
   await steps(page, 1);
@@ -176,8 +164,8 @@ async function everywhere(stage) {
   const program = await stage.program(stage.file("cube.toml", MOVING_CUBE));
   for (const [width, height, colorScheme, font] of [[1440, 900, "light", 100], [390, 800, "dark", 100], [390, 800, "light", 200]]) {
     const page = await stage.page({ viewport: { width, height }, colorScheme });
-    await page.goto(program.address);
-    await until(page, () => supple?.model.frame);
+    await page.goto(atStep(program.address, 0));
+    await isAt(page, 0);
     await page.addStyleTag({ content: `html { font-size: ${font}% }` });
     if (width < 960) await page.getByRole("button", { name: "Scene", exact: true }).click();
     await choose(page, "Field", "Displacement");

@@ -2,17 +2,20 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { hasFrame, pause, runProgram, scenes, seenTriangle, settled, step, TWO_BALLS, until } from "./tools/harness.mjs";
+import { atStep, hasFrame, isAt, pause, runProgram, said, scenes, seenTriangle, settled, step, TWO_BALLS, until } from "./tools/harness.mjs";
 
 /** Exports a page and opens it. Any other request fails the test. */
-async function open(stage, ...input) {
+const open = (stage, input) => openFrom(stage, input, (address) => address);
+
+/** The same, at the address that `from` makes of that of the file. */
+async function openFrom(stage, input, from) {
   const file = stage.file("page.html");
-  await runProgram(stage.supple, ["view", ...input, "--export", file]);
+  await runProgram(stage.supple, ["view", input, "--export", file]);
   const page = await stage.page({ offline: true });
   page.on("request", (request) => {
     if (!/^(file|blob|data):/.test(request.url())) stage.errors.push(`it asks for ${request.url()}`);
   });
-  await page.goto(pathToFileURL(file).href);
+  await page.goto(from(pathToFileURL(file).href));
   await hasFrame(page);
   return page;
 }
@@ -23,7 +26,7 @@ async function movesAndCollides(stage) {
   await pause(page);
   const paused = await step(page);
   await page.getByRole("button", { name: "+1 step" }).click();
-  await until(page, (wanted) => supple.model.frame.text.step === wanted, paused + 1);
+  await isAt(page, paused + 1);
   await page.getByRole("checkbox", { name: "Object octrees" }).check();
   await until(page, () => supple.counts().boxes > 0);
 }
@@ -31,12 +34,8 @@ async function movesAndCollides(stage) {
 /** After some steps the page has the same contacts as the program, bit by bit. */
 async function agreesWithTheProgram(stage) {
   const scene = join(scenes, "nine.toml");
-  const at = async (page) => {
-    await pause(page);
-    await page.getByRole("button", { name: "Reset" }).click();
-    await until(page, () => supple.model.frame?.text.step === 0);
-    await page.evaluate(() => supple.client.send({ do: "step", count: 12 }));
-    await until(page, () => supple.model.frame.text.step === 12);
+  const at12 = async (page) => {
+    await isAt(page, 12);
     return page.evaluate(async () => {
       const { contacts, contactPoints } = supple.model.frame;
       const all = new Blob([contacts, contactPoints, ...supple.model.objects.map(({ positions }) => positions)]);
@@ -45,10 +44,10 @@ async function agreesWithTheProgram(stage) {
       return { contacts: contacts.length / 8, hash };
     });
   };
-  const carried = await at(await open(stage, scene));
-  const { page } = await stage.view(scene);
+  const carried = await at12(await openFrom(stage, scene, (address) => atStep(address, 12)));
+  const { page } = await stage.viewAt(12, scene);
   assert.ok(carried.contacts > 0);
-  assert.deepEqual(carried, await at(page));
+  assert.deepEqual(carried, await at12(page));
 }
 
 async function isPulled(stage) {
@@ -63,6 +62,7 @@ async function isPulled(stage) {
   await page.mouse.move(right.x, right.y, { steps: 12 });
   await until(page, () => supple.model.frame.contacts.length > 0);
   await page.mouse.up();
+  await settled(page);
   const seen = await seenTriangle(page, 1);
   await page.getByRole("radio", { name: "Select" }).click();
   await page.mouse.click(seen.x, seen.y);
@@ -76,24 +76,34 @@ async function playsARecording(stage) {
   await until(page, () => supple.model.history.frames.length > 0);
   await pause(page);
   await page.getByRole("slider", { name: "Timeline" }).fill("20");
-  await until(page, () => supple.model.frame.text.step === 20);
+  await isAt(page, 20);
   assert.equal(
     await page.evaluate(() => supple.model.frame.contacts.length / 8),
     await page.evaluate(() => supple.model.history.column("contacts")[20]),
   );
 }
 
+/** With Verlet's method its time step is too long. It is small, because the module is slower than the program. */
+const STIFF = `
+[scene]
+time_step = 0.01
+[[object]]
+name = "block"
+model = "icosphere"
+motion = { kind = "mass_spring", integrator = "backward_euler", stiffness = 30000, random_force = 1, deform_seconds = 1 }
+`;
+
 /** The module is compiled without exceptions. A body that blows up must not end the session. */
 async function survivesABodyThatBlowsUp(stage) {
-  const page = await open(stage, join(scenes, "soft_block.toml"));
+  const page = await open(stage, stage.file("stiff.toml", STIFF));
   await page.getByRole("tab", { name: "Settings" }).click();
   const integrator = page.getByRole("combobox", { name: "Integrator" });
-  const fliesOff = until(page, () => document.querySelector("[role=log]").textContent.includes("flies off"));  // the notice goes away
   await integrator.selectOption("verlet");
   await page.getByText("is too long for block").waitFor();
-  await fliesOff;
-  await until(page, () => !supple.model.frame.text.playing);
+  await said(page, "flies off");
+  await until(page, () => supple.model.frame?.text.playing === false);
   await integrator.selectOption("backward_euler");
+  await isAt(page, 0);  // a change restarts the simulation
   await page.getByRole("button", { name: "Play", exact: true }).click();
   await until(page, () => supple.model.frame.text.step > 10);
 }

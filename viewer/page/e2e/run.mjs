@@ -17,7 +17,10 @@ import { SIZES, THEMES, windowOf } from "./tools/sizes.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const results = join(here, "results");
+/** Ends a test that hangs. */
 const TEST_MILLISECONDS = 300_000;
+/** With --slow, times as long. */
+const PATIENCE = 3;
 /** Browsers that run tests at the same time. */
 const BROWSERS = Math.min(2, cpus().length);
 
@@ -80,7 +83,7 @@ async function runTest({ name, body }, browser) {
   const { size, theme, slow } = { ...windowOf(name), ...chosen };
   const stage = new Stage(resolve(program), browser, COARSE, { size, theme, slow });
   let timer;
-  const tooLong = new Promise((_, fail) => (timer = setTimeout(() => fail(new Error("it takes too long")), TEST_MILLISECONDS)));
+  const tooLong = new Promise((_, fail) => (timer = setTimeout(() => fail(new Error("it takes too long")), TEST_MILLISECONDS * (slow ? PATIENCE : 1))));
   const begin = Date.now();
   try {
     await Promise.race([body(stage), tooLong]);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { camera, hasFrame, pause, picture, runProgram, scenes, settled, step, TWO_BALLS, until } from "./tools/harness.mjs";
+import { atStep, camera, hasFrame, isAt, picture, runProgram, said, scenes, settled, steps, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 
@@ -56,6 +56,7 @@ async function savedChangedLoaded(stage) {
   assert.equal(JSON.parse(readFileSync(file)).objects.left.colour, "#aa3366");
 
   await loadView(page, plain);
+  await until(page, () => !supple.model.layers.wireframe);
   await settled(page);
   assert.ok((await picture(page)) === first, "the first view is another picture");
   assert.equal(await page.getByRole("checkbox", { name: "Object octrees" }).isChecked(), false);
@@ -94,7 +95,7 @@ async function malformedFilesChangeNothing(stage) {
     ['{"version": 1, "layer": {}}', "layer is unknown. Nothing is changed."],
   ]) {
     await loadView(page, { name: "view.json", mimeType: "application/json", buffer: Buffer.from(text) });
-    await page.getByRole("log").getByText(sentence).waitFor();
+    await said(page, sentence);
   }
   await settled(page);
   assert.ok((await picture(page)) === before);
@@ -104,17 +105,16 @@ async function malformedFilesChangeNothing(stage) {
 async function copiedLink(page) {
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
   await button(page, "Copy link").click();
-  await page.getByRole("log").getByText("The link to this moment is copied.").waitFor();
+  await said(page, "The link to this moment is copied.");
   return page.evaluate(() => navigator.clipboard.readText());
 }
 
 async function linkToAFrame(stage) {
   const file = stage.file("run.h5");
   await runProgram(stage.supple, ["simulate", nine, "--frames", "21", "--record", file, "--quiet"]);
-  const { page } = await stage.view(file);
-  await pause(page);
+  const { page } = await stage.viewAt(0, file);
   await page.getByRole("slider", { name: "Timeline" }).fill("12");
-  await until(page, () => supple.model.frame.text.step === 12);
+  await isAt(page, 12);
   await page.getByRole("checkbox", { name: "Wireframe" }).check();
   await page.getByRole("combobox", { name: "Axis view" }).selectOption("top");
   await settled(page);
@@ -122,14 +122,14 @@ async function linkToAFrame(stage) {
   const link = await copiedLink(page);
   const other = await stage.page();
   await other.goto(link);
-  await until(other, () => window.supple?.model.frame?.text.step === 12);
+  await isAt(other, 12);
   await settled(other);
   assert.ok((await picture(other)) === seen);
   assert.equal(await other.evaluate(() => supple.playing), false);
 
   const damaged = await stage.page();
   await damaged.goto(link.slice(0, -30));
-  await damaged.getByRole("log").getByText("The link is damaged").waitFor();
+  await said(damaged, "The link is damaged");
   await hasFrame(damaged);
 }
 
@@ -144,15 +144,14 @@ async function linkToAStep(stage) {
     await hasFrame(page);
     return page;
   };
-  const page = await open(pathToFileURL(file).href);
-  await until(page, () => supple.model.frame.text.step >= 7);
-  await pause(page);
-  const at = await step(page);
+  const page = await open(atStep(pathToFileURL(file).href, 0));
+  const at = 7;
+  await steps(page, at);
   await button(page, "Copy link").click();
   const link = await page.getByRole("textbox", { name: "Link" }).inputValue();
   const seen = await page.evaluate(() => [...supple.model.positions]);
   const other = await open(link);
-  await until(other, (at) => supple.model.frame.text.step === at, at);
+  await isAt(other, at);
   assert.deepEqual(await other.evaluate(() => [...supple.model.positions]), seen);
   const [a, b] = [await camera(page), await camera(other)];
   for (const part of ["position", "target"]) b[part].forEach((x, i) => assert.ok(Math.abs(x - a[part][i]) < 1e-9, `${x} is not ${a[part][i]}`));
@@ -222,14 +221,12 @@ async function figureInMillimetres(stage) {
   await page.getByRole("combobox", { name: "Slice", exact: true }).selectOption("slice in x");
   await openFigures(page);
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
-  await page.getByRole("log").getByText("An SVG cannot show a slice.").waitFor();
+  await said(page, "An SVG cannot show a slice.");
 }
 
 async function plotAsSvg(stage) {
-  const { page } = await stage.view(nine);
+  const { page } = await stage.viewAt(25, nine);
   await page.getByRole("tab", { name: "Plots" }).click();
-  await until(page, () => supple.model.history.frames.length > 20);
-  await pause(page);
   const svg = readFileSync(await downloaded(stage, page, () => page.getByRole("button", { name: "Save Contacts and candidates as SVG" }).click()), "utf8");
   const seen = await page.evaluate((svg) => {
     const root = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;

@@ -4,6 +4,7 @@ import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { deflateRawSync } from "node:zlib";
 import { reachDrawers, SIZES } from "./sizes.mjs";
 
 export const repository = resolve(dirname(fileURLToPath(import.meta.url)), "../../../..");
@@ -26,7 +27,7 @@ export class Program {
     const before = Date.now();
     let code;
     void program.ended.then((end) => (code = end));
-    while (!(program.address = /http:\/\/\S+/.exec(program.output)?.[0])) {
+    while (!(program.address = addressIn(program.output))) {
       if (code) throw new Error(`supple view ended with ${JSON.stringify(code)}: ${program.output}`);
       if (Date.now() - before > START_MILLISECONDS) throw new Error(`supple view prints no address: ${program.output}`);
       await new Promise((done) => setTimeout(done, 20));
@@ -38,7 +39,22 @@ export class Program {
     this.child.kill(signal);
     return this.ended;
   }
+
+  /** Waits until the program has printed a text: its two outputs arrive in no order. */
+  async prints(text) {
+    const before = Date.now();
+    while (!this.output.includes(text)) {
+      if (Date.now() - before > START_MILLISECONDS) throw new Error(`supple view does not print ${text}: ${this.output}`);
+      await new Promise((done) => setTimeout(done, 20));
+    }
+  }
 }
+
+/** The address that a program has printed, when all of it has arrived. */
+export const addressIn = (output, before = "") => new RegExp(`${before}(http://\\S+)\\s`).exec(output)?.[1];
+
+/** The address of a page that is paused at a step from the beginning: it shows no other frame of a simulation before its first. */
+export const atStep = (address, step) => `${address}#view=${deflateRawSync(JSON.stringify({ version: 1, step })).toString("base64url")}`;
 
 /** Runs the program to its end and returns its output. */
 export function runProgram(supple, args, options = {}) {
@@ -47,7 +63,7 @@ export function runProgram(supple, args, options = {}) {
     let output = "";
     for (const stream of [child.stdout, child.stderr]) stream.on("data", (data) => (output += data));
     child.on("error", fail);
-    child.on("exit", (code) => (code === 0 ? done(output) : fail(new Error(`supple ${args.join(" ")} gave ${code}: ${output}`))));
+    child.on("close", (code) => (code === 0 ? done(output) : fail(new Error(`supple ${args.join(" ")} gave ${code}: ${output}`))));
   });
 }
 
@@ -130,6 +146,7 @@ export class Stage {
     const context = await this.browser.newContext({ acceptDownloads: true, reducedMotion: "reduce", ...others });
     this.contexts.push(context);
     if (!antialias) await context.addInitScript(drawWithoutAntialiasing);
+    await context.addInitScript(keepNotices);
     const page = await context.newPage();
     page.setDefaultTimeout(120_000);  // ends a test that hangs; a busy machine needs long
     if (this.slow) await (await context.newCDPSession(page)).send("Emulation.setCPUThrottlingRate", { rate: SLOWDOWN });
@@ -147,6 +164,16 @@ export class Stage {
     return { program, page };
   }
 
+  /** Like `view`, but paused at a step. What the page shows does not depend on how fast it was opened. */
+  async viewAt(step, ...args) {
+    const program = await this.program(...args);
+    const page = await this.page();
+    await page.goto(atStep(program.address, step));
+    await isAt(page, step);
+    await settled(page);
+    return { program, page };
+  }
+
   async cleanUp() {
     for (const context of this.contexts) await context.close().catch(() => {});
     for (const program of this.programs) if (program.child.exitCode === null && program.child.signalCode === null) await program.stop("SIGKILL");
@@ -161,8 +188,19 @@ function drawWithoutAntialiasing() {
   };
 }
 
+/** Notices disappear after some seconds, perhaps before the test looks. */
+function keepNotices() {
+  window.notices = [];
+  const isNotice = (node) => node.classList?.contains("notice") && node.checkVisibility();
+  const take = (records) => notices.push(...records.flatMap(({ addedNodes }) => [...addedNodes].filter(isNotice).map((node) => node.textContent)));
+  new MutationObserver(take).observe(document, { childList: true, subtree: true });
+}
+
 export const hasFrame = (page) => page.waitForFunction(() => (window.supple?.model.framesSeen ?? 0) > 0);
 export const until = (page, condition, argument) => page.waitForFunction(condition, argument);
+/** Waits until the page has shown a notice that contains a text, also when it has disappeared again. */
+export const said = (page, text) => until(page, (text) => window.notices.some((notice) => notice.includes(text)), text);
+export const isAt = (page, step) => until(page, (step) => window.supple?.model.frame?.text.step === step, step);
 export const step = (page) => page.evaluate(() => supple.model.frame.text.step);
 export const counts = (page) => page.evaluate(() => supple.counts());
 export const camera = (page) => page.evaluate(() => supple.camera());
@@ -170,13 +208,21 @@ export const camera = (page) => page.evaluate(() => supple.camera());
 /** Pauses and waits for the last frame. */
 export async function pause(page) {
   await page.evaluate(() => supple.client.ask({ do: "pause" }));
-  await until(page, () => !supple.model.frame.text.playing);
+  await until(page, () => supple.model.frame?.text.playing === false);
+  await settled(page);
+}
+
+/** Takes steps of a paused simulation and waits until the last one is drawn. */
+export async function steps(page, count) {
+  const from = await step(page);
+  await page.evaluate((count) => supple.client.ask({ do: "step", count }), count);
+  await isAt(page, from + count);
   await settled(page);
 }
 
 /**
  * Waits until the page has drawn a frame that includes the effects of all commands so far, and draws no more; then
- * its panels show that frame.
+ * its panels show that frame. Call it while nothing plays: otherwise the page may always draw.
  * A command without effect makes the session send such a frame.
  */
 export async function settled(page) {
@@ -252,9 +298,10 @@ export const seenTriangle = (page, object, least = -Infinity) =>
 
 /**
  * Opens a file whose session is under control of the test. `alter` receives each message, a function to send
- * a message, and the socket; `command` receives each command and a function to forward it.
+ * a message, and the socket; `command` receives each command and a function to forward it. With `step` the page is
+ * paused there.
  */
-export async function pageWithMessages(stage, file, alter, command = (text, send) => send(text), options = []) {
+export async function pageWithMessages(stage, file, alter, command = (text, send) => send(text), options = [], step = null) {
   const program = await stage.program(file, ...options);
   const page = await stage.page();
   await page.routeWebSocket(/\/session/, (socket) => {
@@ -263,7 +310,8 @@ export async function pageWithMessages(stage, file, alter, command = (text, send
     socket.onMessage((text) => command(text, (altered) => server.send(altered), send));
     server.onMessage((message) => alter(Buffer.from(message), send, socket));
   });
-  await page.goto(program.address);
+  await page.goto(step === null ? program.address : atStep(program.address, step));
+  if (step !== null) await isAt(page, step);
   return page;
 }
 

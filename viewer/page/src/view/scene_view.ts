@@ -362,8 +362,8 @@ export class SceneView {
     requestAnimationFrame((next) => this.turn(next));
     for (const rig of this.panes.rigs) rig.advance(now);
     this.onTurn();
-    if (!this.dirty || this.takesPictures) return;
     this.simplifyWhenSlow(now);
+    if (!this.dirty || this.takesPictures) return;
     this.draw();
     this.times.push(now);
     if (this.times.length > 600) this.times.splice(0, 300);
@@ -372,7 +372,9 @@ export class SceneView {
   /** Switches occlusion off after many slow pictures in a row. */
   private simplifyWhenSlow(now: number): void {
     const took = now - this.lastTurn;
+    const hasDrawn = this.times.at(-1) === this.lastTurn;
     this.lastTurn = now;
+    if (!hasDrawn) return;  // it waited for something to draw
     this.slowTurns = took > SLOW_MILLISECONDS && took < 1000 ? this.slowTurns + 1 : 0;
     if (!this.model.occlusion || this.slowTurns < SLOW_TURNS) return;
     this.model.occlusion = false;
