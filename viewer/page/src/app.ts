@@ -137,15 +137,15 @@ export class App {
     this.player = new Player(model, this.client);
     this.tools = new Tools(model, this.client, view, inspector);
     this.tools.onPick = () => this.openTab("Inspect");
-    this.plots = new Plots(model, (frame) => this.player.seek(frame));
-    this.pinTable = new PinTable(model, this.pins, (pin) => this.showPin(pin), (step) => this.player.seek(step));
+    this.plots = new Plots(model, (frame) => this.player.goTo(frame));
+    this.pinTable = new PinTable(model, this.pins, (pin) => this.showPin(pin), (step) => this.player.goTo(step));
     this.pins.on("list", (pin) => pin && this.openTab("Pins"));
     const program = new Program(model, this.client, (point, reach) => view.flyTo(point, reach));
     this.framesDialog = new FramesDialog(
       model, view, (plan, signal, progress) => new FramesRun(model, this.client, view, plan, signal, progress).go(), (text) => this.notices.show(text),
     );
     this.views = new Views(model, this.client, { view: () => this.viewState(), apply: (state) => this.applyView(state), say: (text) => this.notices.show(text) });
-    this.scenePanel.element.firstElementChild!.after(new ComparisonPanel(model, (frame) => this.player.seek(frame)).element);
+    this.scenePanel.element.firstElementChild!.after(new ComparisonPanel(model, (frame) => this.player.goTo(frame)).element);
     this.scenePanel.element.append(this.views.element);
     this.tabs = new Tabs({
       Inspect: h("div", {}, inspector.element, new NodePairs(model, this.client).element),

@@ -24,6 +24,8 @@ export class Player {
   private readonly simulationOnly: HTMLElement[];
   private readonly always: HTMLElement[];
   private readonly reset_ = iconButton("reset", "Reset", "R", () => this.reset());
+  /** Commands to play or pause without an answer yet: frames that were sent before do not know of them. */
+  private unanswered = 0;
   private wanted: number | null = null;
   private asked: number | null = null;
 
@@ -35,10 +37,7 @@ export class Player {
     const back = h("button", { type: "button", class: "text-button", "aria-label": "−1 step", title: "Step back (←)", onclick: () => this.step(-1) }, "−1");
     const forward = h("button", { type: "button", class: "text-button", "aria-label": "+1 step", title: "Step (→)", onclick: () => this.step(1) }, "+1");
     const timeline = (this.timeline = new Timeline(model));
-    timeline.onScrub = (step) => {
-      this.pause();
-      this.seek(step);
-    };
+    timeline.onScrub = (step) => this.goTo(step);
     timeline.onSection = (section) => this.loopSection(section);
     const seed = h("label", { class: "seed" }, "Seed ", this.seed);
     this.seekable = [first, last, previous, next, timeline.kinds, back, this.loop, timeline.section, timeline.element, timeline.named];
@@ -96,7 +95,7 @@ export class Player {
 
   private show(text: FrameText): void {
     const isRecording = this.model.scene!.source === "recording";
-    this.setPlaying(text.playing);
+    if (this.unanswered === 0) this.setPlaying(text.playing);
     this.speed = text.speed;
     if (document.activeElement !== this.speeds) this.speeds.value = String(this.speed);
     if (text.loop !== undefined) this.setLooping(text.loop);
@@ -130,21 +129,29 @@ export class Player {
   }
 
   togglePlay(): void {
-    if (!this.model.moves) return;
-    this.client.send({ do: this.playing ? "pause" : "play" });
-    this.setPlaying(!this.playing);
+    if (this.model.moves) this.tell({ do: this.playing ? "pause" : "play" }, !this.playing);
   }
 
   pause(): void {
-    if (!this.playing) return;
-    this.client.send({ do: "pause" });
-    this.setPlaying(false);
+    if (this.playing) this.tell({ do: "pause" }, false);
+  }
+
+  private tell(command: Record<string, unknown>, playing: boolean): void {
+    this.unanswered += 1;
+    const answered = (): void => void (this.unanswered -= 1);
+    this.client.ask(command).then(answered, answered);
+    this.setPlaying(playing);
+  }
+
+  /** Pauses at a step. */
+  goTo(step: number): void {
+    this.pause();
+    this.seek(step);
   }
 
   step(count: number): void {
     if (count < 0 && !this.canSeek) return;
-    this.client.send({ do: "step", count });
-    this.setPlaying(false);
+    this.tell({ do: "step", count }, false);
   }
 
   toggleLoop(): void {
@@ -200,10 +207,8 @@ export class Player {
   /** Sends at most one seek per drawn frame, however fast the slider moves. */
   turn(): void {
     if (this.wanted === null) return;
-    if (this.wanted !== this.model.frame?.text.step) {
-      this.client.send({ do: "seek", frame: this.wanted });
-      this.asked = this.wanted;
-    }
+    this.client.send({ do: "seek", frame: this.wanted });
+    this.asked = this.wanted;
     this.wanted = null;
   }
 
@@ -212,7 +217,6 @@ export class Player {
     if (!this.canSeek) return;
     const best = this.timeline.find(this.wanted ?? this.asked ?? this.model.frame?.text.step ?? 0, direction);
     if (best === null) return;
-    this.pause();
-    this.seek(best);
+    this.goTo(best);
   }
 }

@@ -79,8 +79,10 @@ export class Program {
 
   private showReason(reason: Break | null, step: number): void {
     const isNew = reason !== null && (reason.text !== this.reason?.text || this.banner.hidden);
+    const before = this.reason;
     this.reason = reason;
-    if (!reason) return this.say("", []);
+    // A late frame does not tell whether the program goes on.
+    if (!reason) return before ? this.say("", []) : undefined;
     const { point, objects } = reason;
     const show = () => {
       if (point) this.flyTo(point, this.reachOf(objects));
