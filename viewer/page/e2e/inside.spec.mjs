@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { camera, coloursAt, coloursIn, goesOn, groundPlace, hasFrame, pause, picture, placesOf, scenes, seenTriangle, settled, TWO_BALLS, until } from "./tools/harness.mjs";
+import { camera, coloursAt, coloursIn, goesOn, groundPlace, hasFrame, pause, picture, placesOf, scenes, seenTriangle, settled, simulateTo, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const ball = (name, x, more = "") => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 12\ntranslate = [${x}, 0, 0]\n${more}\n`;
 const [CUT, OVERLAP] = [[0x8d, 0x96, 0xa3], [0xc1, 0x12, 0x1f]];
@@ -148,8 +148,7 @@ async function fieldIsShown(stage) {
   const ball = (name, x, more) => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 4\ntranslate = [${x}, 0, 0]\nmargin = 0.3\nsolid = true\n${more}`;
   const sways = 'motion = { kind = "sway", amplitude = 0.2, wavelength = 1.5, period = 1 }\n';
   const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "proximity,penetration"\ntime_step = 0.01\n${ball("one", 0, sways)}${ball("two", 1.9, "")}${ball("three", 4.1, "")}`));
-  await until(page, () => supple.model.frame.text.step > 2);
-  await pause(page);
+  await simulateTo(page, 5);
   for (const label of ["Depths", "Curves", "Contact points", "Proximity pairs"]) await page.getByRole("checkbox", { name: label }).uncheck();
   const choose = (label) => page.getByRole("combobox", { name: "Field", exact: true }).selectOption({ label });
   const isEqual = (text, value, what) => assert.ok(Math.abs(Number(text) - value) <= 1e-4 * Math.abs(value), `${what}: ${text} is not ${value}`);
@@ -372,8 +371,7 @@ async function viewsHaveTheirSliceAndObjects(stage) {
 /** Positions go to the graphics card once, however many views show them. */
 async function viewsShareTheirData(stage) {
   const { page } = await stage.view(nine);
-  await until(page, () => supple.model.frame.contacts.length > 200);
-  await pause(page);
+  await simulateTo(page, 20);
   const drawn = () => page.evaluate(() => {
     let bytes = 0;
     const { bufferSubData } = WebGL2RenderingContext.prototype;
@@ -406,6 +404,7 @@ async function viewsInANarrowWindow(stage) {
     await page.goto(program.address);
     await hasFrame(page);
     await page.getByRole("button", { name: "One, two or four views" }).tap();
+    await page.getByRole("img", { name: "3D view, 1 of 2 is active" }).waitFor();
     await settled(page);
     const canvas = await box(page);
     const isStacked = canvas.height > canvas.width;

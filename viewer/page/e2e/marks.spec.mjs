@@ -1,7 +1,7 @@
 // What touches what, at a glance: marks with a size in pixels, and the first line of the side bar.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { pause, picture, scenes, settled, until } from "./tools/harness.mjs";
+import { picture, scenes, settled, simulateTo, until } from "./tools/harness.mjs";
 
 const ball = (name, x, more = "") => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, 0, 0]\n${more}\n`;
 const touchLine = (page) => page.getByRole("status", { name: "What touches" });
@@ -36,13 +36,13 @@ async function smallGapsAreSeen(stage) {
 /** Thousands of gaps are counted in words, but not all are drawn; more of them from nearby. */
 async function denseMarksThinOut(stage) {
   const { page } = await stage.view(join(scenes, "cloth_over_ball.toml"));
-  await until(page, () => supple.counts().proximity > 1500);
-  await pause(page);
+  await simulateTo(page, 40);
   const drawn = () => page.evaluate(() => {
     supple.draw();
     return supple.drawn().points / 3;  // marks behind surfaces, halos and colours
   });
   const gaps = await page.evaluate(() => supple.model.frame.proximityPairs.length / 2);
+  assert.ok(gaps > 1500, `${gaps} gaps`);
   assert.equal(await page.evaluate(() => supple.counts().proximity), gaps);
   await page.getByRole("list", { name: "Layers" }).getByText(gaps.toLocaleString("en")).waitFor();
   const far = await drawn();

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
-import { hasFrame, pause, scenes, settled, until } from "./tools/harness.mjs";
+import { hasFrame, scenes, settled, simulateTo, until } from "./tools/harness.mjs";
 import { SIZES } from "./tools/sizes.mjs";
 
 const nine = join(scenes, "nine.toml");
@@ -14,8 +14,8 @@ async function open(stage, options) {
   const program = await stage.program(nine);
   const page = await stage.page(options);
   await page.goto(program.address);
-  await until(page, () => (window.supple?.model.frame?.text.step ?? 0) > 20);
-  await pause(page);
+  await hasFrame(page);
+  await simulateTo(page, 20);
   return page;
 }
 
@@ -55,7 +55,7 @@ async function reachesEverything(page, press) {
     const tab = page.getByRole("tab", { name });
     await isReachable(page, tab);
     await press(tab);
-    assert.equal(await tab.getAttribute("aria-selected"), "true");
+    await page.getByRole("tab", { name, selected: true }).waitFor();
     await isReachable(page, page.locator(`#page-${name}`));
   }
   await isReachable(page, page.getByLabel("Time step"));
@@ -203,7 +203,9 @@ async function accessible(stage) {
       const inside = await dialog.evaluate((element) => element.scrollWidth <= element.clientWidth);
       assert.ok(inside, `the dialog is wider than its box, ${viewport.width}`);
       await page.keyboard.press("Escape");
+      await dialog.waitFor({ state: "hidden" });
       await page.keyboard.press("Control+k");
+      await page.getByRole("dialog", { name: "Command palette" }).waitFor();
       await check("palette");
     }
   }

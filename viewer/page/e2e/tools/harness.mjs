@@ -220,10 +220,20 @@ export async function steps(page, count) {
   await settled(page);
 }
 
+/** Starts the simulation again and takes so many steps: unlike a simulation that plays, it is then in the same state in each run. It is paused. */
+export async function simulateTo(page, step) {
+  await page.evaluate(async (count) => {
+    const steps = count > 0 ? [{ do: "step", count }] : [];
+    for (const command of [{ do: "pause" }, { do: "reset" }, ...steps]) await supple.client.ask(command);
+  }, step);
+  await until(page, (step) => supple.model.frame?.text.step === step, step);
+  await settled(page);
+}
+
 /**
  * Waits until the page has drawn a frame that includes the effects of all commands so far, and draws no more; then
- * its panels show that frame. Call it while nothing plays: otherwise the page may always draw.
- * A command without effect makes the session send such a frame.
+ * its panels show that frame. Call it while nothing plays: otherwise the page may always draw. Steps that were asked
+ * for may still follow. A command without effect makes the session send such a frame.
  */
 export async function settled(page) {
   await page.evaluate(async () => {
@@ -247,6 +257,17 @@ export const goesOn = (page) =>
   page.evaluate(async () => {
     for (let i = 0; i < 30; ++i) await new Promise((done) => requestAnimationFrame(done));
   });
+
+/** The box of the first plot, once it is as wide as the open tab and has all rows. */
+export async function plotBox(page) {
+  const plot = page.locator("#page-Plots .u-over").first();
+  await plot.waitFor();
+  await until(page, () => {
+    const [tab, plot] = [".plots", ".plots .u-wrap"].map((part) => document.querySelector(`#page-Plots ${part}`).clientWidth);
+    return tab > 0 && plot === Math.max(120, tab);
+  });
+  return plot.boundingBox();
+}
 
 /** A place of the window where the view shows the ground. */
 export const groundPlace = (page) =>
