@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { hasFrame, isAt, pause, runProgram, scenes, seenTriangle, settled, steps, SWAYING_CROWD, until } from "./tools/harness.mjs";
+import { goesOn, hasFrame, isAt, pause, runProgram, scenes, seenTriangle, settled, steps, SWAYING_CROWD, until } from "./tools/harness.mjs";
+import { SIZES } from "./tools/sizes.mjs";
 
 const nine = join(scenes, "nine.toml");
 const pins = (page) => page.getByRole("grid", { name: "Pins" });
@@ -276,7 +277,33 @@ async function helpListsTheCommands(stage) {
   for (const key of ["Space", "Shift ←", "Ctrl K", "Shift I", "Q", "X", "Esc"]) assert.ok(keys.includes(key), `${key} is not listed`);
 }
 
+/** While a scene plays, its values are written again and again, and their buttons work all the same. */
+async function buttonsStay(stage) {
+  const program = await stage.program(nine);
+  const page = await stage.page(SIZES[1440]);
+  await page.goto(program.address);
+  await hasFrame(page);
+  await page.evaluate(() => supple.model.select({ object: 0, triangle: null, vertex: null }));
+  await page.getByRole("tab", { name: "Inspect" }).click();
+  const pin = page.locator(".details").getByRole("button", { name: "pin" });
+  await pin.waitFor();
+  await page.evaluate(() => {
+    const button = document.querySelector(".details button");
+    button.focus();
+    button.dataset.first = "";
+  });
+  await until(page, () => document.querySelector(".details button:not([data-first])") !== null);
+  await until(page, () => document.activeElement?.matches(".details button"));
+  const { x, y, width, height } = await page.evaluate(() => document.querySelector(".details button").getBoundingClientRect().toJSON());
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await goesOn(page);  // longer than the values stay
+  await page.mouse.up();
+  await until(page, () => supple.pins.list.length === 1);
+}
+
 export const tests = [
+  ["buttons stay while values change", buttonsStay],
   ["pins have each step", pinsFollowEachStep],
   ["pins of a recording", pinsOfARecording],
   ["a tap on a plot goes to its step", tapsOnPlotsSeek],

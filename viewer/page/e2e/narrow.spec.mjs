@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
-import { hasFrame, scenes, settled, simulateTo, until } from "./tools/harness.mjs";
+import { hasFrame, pause, scenes, settled, simulateTo, until } from "./tools/harness.mjs";
 import { SIZES } from "./tools/sizes.mjs";
 
 const nine = join(scenes, "nine.toml");

@@ -63,6 +63,24 @@ export function setIcon(button: HTMLButtonElement, name: string, label: string, 
   button.title = key ? `${label} (${key})` : label;
 }
 
+const refills = new WeakMap<HTMLElement, ReturnType<typeof setTimeout>>();
+
+/**
+ * Replaces content that changes while a scene plays. The button with the focus keeps it, and a pressed button stays
+ * until it is released: only then it is clicked.
+ */
+export function refill(element: HTMLElement, ...content: Node[]): void {
+  clearTimeout(refills.get(element));
+  if (element.matches(":active")) {
+    refills.set(element, setTimeout(() => refill(element, ...content), 50));
+    return;
+  }
+  const buttons = () => [...element.querySelectorAll("button")];
+  const focused = buttons().indexOf(document.activeElement as HTMLButtonElement);
+  element.replaceChildren(...content);
+  buttons()[focused]?.focus();
+}
+
 /** A dialog with a title and a close button. */
 export function sheet(title: string, kind: string, ...children: Child[]): HTMLDialogElement {
   const dialog = h(

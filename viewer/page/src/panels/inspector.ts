@@ -5,7 +5,7 @@ import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts"
 import type { Explanation, Measurement, Model } from "../model";
 import type { Pins } from "../pins";
 import { STAGES } from "../stages";
-import { h, readable } from "./dom";
+import { h, readable, refill } from "./dom";
 
 /** Interval between updates of the values while things move. */
 const REFRESH_MILLISECONDS = 250;
@@ -225,7 +225,7 @@ export class Inspector {
   private draw(): void {
     const { selection } = this.model;
     if (!selection) {
-      this.details.replaceChildren(h("p", { class: "hint empty" }, "Click an object, a triangle or a contact point to read its ids and values."));
+      refill(this.details, h("p", { class: "hint empty" }, "Click an object, a triangle or a contact point to read its ids and values."));
       return;
     }
     const object = this.model.objects[selection.object];
@@ -239,6 +239,6 @@ export class Inspector {
       contact.length > 0 ? h("h3", {}, object.name) : this.pinned(object.name),
       table([["object", `${object.index}, ${object.kind}`], ["size", `${readable(object.vertices)} vertices, ${readable(object.triangles)} triangles`], ...this.rowsOf("object").filter(([name]) => name !== "vertices" && name !== "triangles")]),
     );
-    this.details.replaceChildren(...parts);
+    refill(this.details, ...parts);
   }
 }

@@ -1,7 +1,7 @@
 /** The descent of the narrow phase into the octrees of two objects, level by level (Figure 4 of the paper). */
 import type { Client } from "../client";
 import { ALL_LEVELS, LEAVES, type Model } from "../model";
-import { h, readable } from "./dom";
+import { h, readable, refill } from "./dom";
 
 /** Interval between updates while things move. */
 const REFRESH_MILLISECONDS = 250;
@@ -89,12 +89,11 @@ export class NodePairs {
       );
     const sum = (count: (level: Level) => number) => answer.reduce((total, level) => total + count(level), 0);
     const leaves = sum((level) => level.leaf_pairs);
-    const focused = [...this.levels.children].indexOf(document.activeElement!);
-    this.levels.replaceChildren(
+    refill(
+      this.levels,
       ...answer.map((level, k) => row(k, `level ${k}`, level.pairs, level.leaf_pairs)),
       ...(answer.length > 0 ? [row(LEAVES, "leaves", leaves, leaves), row(ALL_LEVELS, "all levels", sum((level) => level.pairs), leaves)] : []),
     );
-    (this.levels.children[focused] as HTMLElement | undefined)?.focus();
     const shown = answer.find((_, k) => isShown(k));
     const more = shown && shown.pairs > shown.names.length ? [`and ${readable(shown.pairs - shown.names.length)} more`] : [];
     this.names.textContent = answer.length === 0 ? "The broad phase does not report this pair." : [...(shown?.names.map((pair) => pair.join(" ")) ?? []), ...more].join("\n");
