@@ -174,7 +174,9 @@ class Run {
   }
 
   std::string saved_so_far() const {
-    return taken_ == 0 || !options_.plot.empty() ? "" : fmt::format("; {} of {} are saved", taken_, counted(planned_, "picture"));
+    return taken_ == 0 || !options_.plot.empty()
+               ? ""
+               : fmt::format("; {} of {} are saved", taken_, counted(planned_, "picture"));
   }
 
   const RenderOptions& options_;

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "hdf5_read.hpp"
@@ -23,6 +27,8 @@
 
 namespace supple {
 namespace {
+
+namespace fs = std::filesystem;
 
 [[noreturn]] void fail_about(const InputFile& file, const std::string& group, const std::string& name,
                              const std::string& value, const std::string& what) {
@@ -144,13 +150,17 @@ RecordedObject read_object(const InputFile& file, std::uint32_t version, std::si
   return object;
 }
 
-/// Opens the file of a rank, which is beside the recording.
-InputFile open_file_of_rank(const InputFile& recording, const std::string& name) {
-  namespace fs = std::filesystem;
+/// The file of a rank is beside the recording.
+fs::path path_of_rank(const InputFile& recording, const std::string& name) {
   std::error_code error;
   fs::path path = fs::path(recording.path()).replace_filename(name);
   if (!fs::exists(path, error) && fs::is_symlink(recording.path(), error))
     path = fs::canonical(recording.path(), error).replace_filename(name);
+  return path;
+}
+
+InputFile open_file_of_rank(const InputFile& recording, const fs::path& path) {
+  std::error_code error;
   if (!fs::exists(path, error))
     throw Error(path.string() + ": is missing, and has objects of " + recording.path() +
                 "; put all files of the recording into one folder");
@@ -189,25 +199,44 @@ auto with_errors_of(const std::string& path, Function function) {
   }
 }
 
-}  // namespace
+/// A file as it was before it was opened.
+struct SeenFile {
+  explicit SeenFile(fs::path name) : path(std::move(name)) { look(time, size); }
+  bool has_changed() const {
+    fs::file_time_type time_now;
+    std::uintmax_t size_now = 0;
+    look(time_now, size_now);
+    return time != time_now || size != size_now;
+  }
+  void look(fs::file_time_type& time_now, std::uintmax_t& size_now) const {
+    std::error_code error;  // a file that is gone has changed
+    time_now = fs::last_write_time(path, error);
+    size_now = fs::file_size(path, error);
+  }
 
-class Recording::Implementation {
+  fs::path path;
+  fs::file_time_type time;
+  std::uintmax_t size = 0;
+};
+
+/// The files of a recording, opened once: what they gain afterwards is not read.
+class OpenFiles {
  public:
-  explicit Implementation(const std::string& path);
+  /// Adds each file to `seen` before it opens it.
+  OpenFiles(const std::string& path, std::vector<SeenFile>& seen);
 
   RecordedFrame frame(std::uint64_t number);
   RecordedFrame summary(std::uint64_t number);
   std::vector<Vec3d> positions(std::uint64_t frame, std::size_t object);
   const RecordingHeader& header() const { return header_; }
   std::uint64_t frame_count() const { return time_.rows(); }
-  const std::string& path() const { return file_.path(); }
 
  private:
   const InputFile& file_of(std::size_t object);
-  void check_frame(std::uint64_t number) const;
   void read_lists(std::uint64_t number, RecordedFrame& frame, bool with_records);
   StepStats stats(std::uint64_t frame);
 
+  std::vector<SeenFile>* seen_;
   InputFile file_;
   std::uint32_t version_;
   ColumnReader time_;  ///< opened before the files of ranks, which have all frames that it has
@@ -219,8 +248,9 @@ class Recording::Implementation {
   std::vector<ColumnReader> positions_;
 };
 
-Recording::Implementation::Implementation(const std::string& path)
-    : file_(path, true),
+OpenFiles::OpenFiles(const std::string& path, std::vector<SeenFile>& seen)
+    : seen_(&seen),
+      file_((seen.emplace_back(path), path), true),
       version_(check_format(file_)),
       time_(file_, "time", ScalarType::float64, {}),
       header_(read_header(file_, version_,
@@ -248,21 +278,17 @@ Recording::Implementation::Implementation(const std::string& path)
   }
 }
 
-const InputFile& Recording::Implementation::file_of(std::size_t object) {
+const InputFile& OpenFiles::file_of(std::size_t object) {
   const std::string name = file_.linked_file(object_path(object));
   if (name.empty()) return file_;
   const auto found = files_of_ranks_.find(name);
   if (found != files_of_ranks_.end()) return found->second;
-  return files_of_ranks_.emplace(name, open_file_of_rank(file_, name)).first->second;
+  const fs::path path = path_of_rank(file_, name);
+  seen_->emplace_back(path);
+  return files_of_ranks_.emplace(name, open_file_of_rank(file_, path)).first->second;
 }
 
-void Recording::Implementation::check_frame(std::uint64_t number) const {
-  if (number >= frame_count())
-    throw Error(path() + ": there is no frame " + std::to_string(number) + "; the recording has " +
-                std::to_string(frame_count()) + ", counted from 0");
-}
-
-StepStats Recording::Implementation::stats(std::uint64_t frame) {
+StepStats OpenFiles::stats(std::uint64_t frame) {
   StepStats stats;
   for (std::size_t c = 0; c < statistics_.size(); ++c) {
     if (!statistics_[c]) continue;
@@ -284,8 +310,7 @@ StepStats Recording::Implementation::stats(std::uint64_t frame) {
   return stats;
 }
 
-RecordedFrame Recording::Implementation::summary(std::uint64_t number) {
-  check_frame(number);
+RecordedFrame OpenFiles::summary(std::uint64_t number) {
   RecordedFrame frame;
   time_.read(number, 1, reinterpret_cast<std::byte*>(&frame.time));
   read_lists(number, frame, false);
@@ -293,14 +318,14 @@ RecordedFrame Recording::Implementation::summary(std::uint64_t number) {
   return frame;
 }
 
-RecordedFrame Recording::Implementation::frame(std::uint64_t number) {
+RecordedFrame OpenFiles::frame(std::uint64_t number) {
   RecordedFrame frame = summary(number);
   read_lists(number, frame, true);
   return frame;
 }
 
 /// Reads the events, or the other lists. Records have ids of objects when all that they refer to is checked.
-void Recording::Implementation::read_lists(std::uint64_t number, RecordedFrame& frame, bool with_records) {
+void OpenFiles::read_lists(std::uint64_t number, RecordedFrame& frame, bool with_records) {
   const auto for_each = [&](auto visit) {
     std::size_t i = 0;
     for_each_list([&]<class Row>(const ResultList<Row>& list, auto member) {
@@ -331,20 +356,72 @@ void Recording::Implementation::read_lists(std::uint64_t number, RecordedFrame& 
   });
 }
 
-std::vector<Vec3d> Recording::Implementation::positions(std::uint64_t frame, std::size_t object) {
-  check_frame(frame);
-  if (object >= positions_.size())
-    throw Error(path() + ": there is no object " + std::to_string(object) + "; the recording has " +
-                std::to_string(positions_.size()) + ", counted from 0");
+std::vector<Vec3d> OpenFiles::positions(std::uint64_t frame, std::size_t object) {
   std::vector<Vec3d> positions(header_.objects[object].rest_positions.size());
   const std::uint64_t row = header_.objects[object].options.is_static ? 0 : frame;
   positions_[object].read(row, 1, reinterpret_cast<std::byte*>(positions.data()));
   return positions;
 }
 
+}  // namespace
+
+/// Reads a recording that may still grow. A run that records changes the files between two reads of HDF5,
+/// which then finds new parts of the index beyond the end of the file that it knows. So what fails is done
+/// again with the files opened anew, as long as they change.
+class Recording::Implementation {
+ public:
+  explicit Implementation(std::string path) : path_(std::move(path)) {
+    read([&](OpenFiles& files) {
+      header_ = files.header();
+      frame_count_ = files.frame_count();
+    });
+  }
+
+  template <class Read>
+  std::invoke_result_t<Read, OpenFiles&> read(Read read) {
+    return with_errors_of(path_, [&] {
+      for (int attempt = 1;; ++attempt) {
+        try {
+          if (!files_) {
+            seen_.clear();
+            files_ = std::make_unique<OpenFiles>(path_, seen_);
+          }
+          return read(*files_);
+        } catch (...) {
+          if (std::ranges::none_of(seen_, &SeenFile::has_changed)) throw;
+          files_.reset();
+          if (attempt == most_attempts)
+            throw Error(path_ +
+                        ": changes while it is read; read it again when the run that records it has ended");
+          std::this_thread::sleep_for(std::chrono::milliseconds(attempt));
+        }
+      }
+    });
+  }
+
+  void check_frame(std::uint64_t number) const { check("frame", number, frame_count_); }
+  void check_object(std::size_t object) const { check("object", object, header_.objects.size()); }
+  const RecordingHeader& header() const { return header_; }
+  std::uint64_t frame_count() const { return frame_count_; }
+
+ private:
+  void check(const char* noun, std::uint64_t number, std::uint64_t count) const {
+    if (number >= count)
+      throw Error(path_ + ": there is no " + noun + " " + std::to_string(number) + "; the recording has " +
+                  std::to_string(count) + ", counted from 0");
+  }
+
+  static constexpr int most_attempts = 50;  // a second and some more
+
+  std::string path_;
+  std::vector<SeenFile> seen_;
+  std::unique_ptr<OpenFiles> files_;
+  RecordingHeader header_;
+  std::uint64_t frame_count_ = 0;
+};
+
 Recording::Recording(const std::filesystem::path& path)
-    : implementation_(
-          with_errors_of(path.string(), [&] { return std::make_unique<Implementation>(path.string()); })) {}
+    : implementation_(std::make_unique<Implementation>(path.string())) {}
 Recording::~Recording() = default;
 Recording::Recording(Recording&&) noexcept = default;
 Recording& Recording::operator=(Recording&&) noexcept = default;
@@ -356,13 +433,17 @@ std::uint64_t Recording::frame_count() const {
   return implementation_->frame_count();
 }
 RecordedFrame Recording::frame(std::uint64_t number) const {
-  return with_errors_of(implementation_->path(), [&] { return implementation_->frame(number); });
+  implementation_->check_frame(number);
+  return implementation_->read([&](OpenFiles& files) { return files.frame(number); });
 }
 RecordedFrame Recording::summary(std::uint64_t number) const {
-  return with_errors_of(implementation_->path(), [&] { return implementation_->summary(number); });
+  implementation_->check_frame(number);
+  return implementation_->read([&](OpenFiles& files) { return files.summary(number); });
 }
 std::vector<Vec3d> Recording::positions(std::uint64_t frame, std::size_t object) const {
-  return with_errors_of(implementation_->path(), [&] { return implementation_->positions(frame, object); });
+  implementation_->check_frame(frame);
+  implementation_->check_object(object);
+  return implementation_->read([&](OpenFiles& files) { return files.positions(frame, object); });
 }
 
 }  // namespace supple

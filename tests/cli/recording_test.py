@@ -132,6 +132,19 @@ class Killed(RecordingTest):
                 output = process.stdout.read()
             self.check(output)
 
+    def test_read_while_it_is_recorded(self):
+        reads = 0
+        with subprocess.Popen([RECORD, "growing.h5", "2000", "--frames-between-flushes", "1", "--pause", "100"],
+                              cwd=self.folder, stdout=subprocess.PIPE, text=True) as process:
+            process.stdout.readline()  # the first frames are there
+            while process.poll() is None:
+                done = self.run_here("diff", "whole.h5", "growing.h5", "--json", "-")
+                self.assertEqual(done.error, "")
+                self.assertIn(done.status, (0, 1))
+                reads += 1
+            process.stdout.read()
+        self.assertGreater(reads, 0)
+
     def test_disk_full(self):
         for number in (0, 100, 400, 1000):
             path = self.folder / "killed.h5"

@@ -64,7 +64,7 @@ class SessionThread {
 
   struct Inbox {
     std::optional<PageNumber> page;  ///< connected since the last take; the commands are from this page
-    bool has_left = false;  ///< the page before it, since the last take
+    bool has_left = false;           ///< the page before it, since the last take
     std::vector<std::string> commands;
     std::size_t bytes = 0;
   };
