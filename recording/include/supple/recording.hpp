@@ -126,7 +126,8 @@ class Recorder {
 class Recording {
  public:
   /// Throws `Error` when the file is not a recording, has an unknown version, or is damaged, or when a file
-  /// of a rank is missing, damaged or of another run.
+  /// of a rank is missing, damaged or of another run. When a read fails because a file is written meanwhile,
+  /// this and all functions open the files again; they throw `Error` after 50 attempts in vain.
   explicit Recording(const std::filesystem::path& path);
   ~Recording();
   Recording(Recording&&) noexcept;

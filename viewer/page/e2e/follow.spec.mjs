@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { goesOn, hasFrame, isAt, pause, runProgram, scenes, seenTriangle, settled, steps, SWAYING_CROWD, until } from "./tools/harness.mjs";
+import { atStep, goesOn, hasFrame, isAt, pause, runProgram, scenes, seenTriangle, settled, steps, SWAYING_CROWD, until } from "./tools/harness.mjs";
 import { SIZES } from "./tools/sizes.mjs";
 
 const nine = join(scenes, "nine.toml");
@@ -252,8 +252,8 @@ async function paletteByTouch(stage) {
   const program = await stage.program(nine);
   for (const [width, colorScheme] of [[390, "dark"], [800, "light"], [1440, "light"]]) {
     const page = await stage.page({ viewport: { width, height: 800 }, hasTouch: true, colorScheme });
-    await page.goto(program.address);
-    await hasFrame(page);
+    await page.goto(atStep(program.address, 3));
+    await isAt(page, 3);
     await page.getByRole("button", { name: "Command palette" }).tap();
     await palette(page).getByRole("option", { name: /^Wireframe/ }).scrollIntoViewIfNeeded();
     await palette(page).getByRole("option", { name: /^Wireframe/ }).tap();

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { camera, goesOn, hasFrame, pause, picture, scenes, settled, simulateTo, step, until } from "./tools/harness.mjs";
+import { camera, goesOn, hasFrame, pause, picture, scenes, settled, simulateTo, step, steps, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 
@@ -108,7 +108,7 @@ async function settingsKeepTheStateOrSayThatTheyRestart(stage) {
 
 /** The reason is at the field, with the range; the value in effect stays. */
 async function wrongValuesAreRefused(stage) {
-  const { page } = await stage.view(nine);
+  const { page } = await stage.viewAt(3, nine);
   await page.getByRole("tab", { name: "Settings" }).click();
   const refused = [
     ["time_step", "-1", "a finite number above 0", "0.02"], ["time_step", "0", "above 0", "0.02"], ["time_step", "soon", "\"soon\"", "0.02"],
@@ -135,8 +135,7 @@ async function wrongValuesAreRefused(stage) {
   await seed.fill("-1");
   await seed.press("Enter");
   await until(page, () => document.querySelector("[aria-label=Seed]").validationMessage.includes("from 0 to 18446744073709551615"));
-  const now = await step(page);
-  await until(page, (before) => supple.model.frame.text.step > before + 3, now);
+  await steps(page, 3);
 }
 
 /** While the page has not drawn the first frame, no time passes. */

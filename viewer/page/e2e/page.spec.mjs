@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { chmodSync, existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { camera, hasFrame, pageWithMessages, pause, picture, scenes, settled, simulateTo, textMessage, TWO_BALLS, until } from "./tools/harness.mjs";
+import { camera, hasFrame, pageWithMessages, pause, picture, scenes, settled, simulateTo, swayingBalls, textMessage, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 const balls = (stage) => stage.file("balls.toml", TWO_BALLS);
@@ -253,11 +253,11 @@ async function viewsSurviveAReload(stage) {
 
 /** Whatever has the focus, except fields for text. */
 async function spacePlaysEverywhere(stage) {
-  const { page } = await stage.view(nine);
+  const { page } = await stage.view(stage.file("balls.toml", swayingBalls(2, 3)));
   await page.getByRole("tab", { name: "Settings" }).click();
   const places = [
     page.getByRole("button", { name: "Frame all" }), page.getByRole("checkbox", { name: "Wireframe" }), page.getByLabel("Bounding volume"),
-    page.getByRole("tab", { name: "Settings" }), page.getByRole("combobox", { name: "Speed" }), page.getByText("More options"), page.getByRole("button", { name: /^fish 1/ }),
+    page.getByRole("tab", { name: "Settings" }), page.getByRole("combobox", { name: "Speed" }), page.getByText("More options"), page.getByRole("button", { name: /^ball 1/ }),
     page.locator("canvas.view"),
   ];
   const checked = await page.getByRole("checkbox", { name: "Wireframe" }).isChecked();

@@ -17,6 +17,8 @@ interface Grip {
   to: [number, number, number];
   /** The target has moved since it was sent. */
   moved: boolean;
+  /** Since it was grabbed. */
+  pulled: boolean;
 }
 
 export class Tools {
@@ -99,7 +101,7 @@ export class Tools {
       return;
     }
     const start = this.view.positionOf(object, vertex);
-    this.grip = { object, vertex, start, to: start, moved: false };
+    this.grip = { object, vertex, start, to: start, moved: false, pulled: false };
     this.client.ask({ do: "grab", object, vertex }).catch((error: Error) => {
       this.client.emit("notice", error.message);
       this.forget();
@@ -143,11 +145,12 @@ export class Tools {
     if (!this.grip?.moved) return;
     this.grip.moved = false;
     this.client.send({ do: "drag", to: this.grip.to });
-    if (!this.model.wasPulled) this.model.setPulled();
+    this.grip.pulled = true;
   }
 
   release(): void {
     if (this.grip) this.client.send({ do: "release" });
+    if (this.grip?.pulled && !this.model.wasPulled) this.model.setPulled();  // not before: then a bar appears, and the view moves
     this.forget();
   }
 

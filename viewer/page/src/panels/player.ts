@@ -42,13 +42,13 @@ export class Player {
     const seed = h("label", { class: "seed" }, "Seed ", this.seed);
     this.seekable = [first, last, previous, next, timeline.kinds, back, this.loop, timeline.section, timeline.element, timeline.named];
     this.simulationOnly = [this.reset_, seed];
-    this.always = [this.play, forward, this.speeds, this.place, this.rate];
+    const readout = h("div", { class: "readout" }, timeline.named, this.newest, this.place, this.rate);
+    this.always = [this.play, forward, this.speeds, readout];
     this.speeds.append(h("option", { value: 0 }, "fastest"), ...SPEEDS.map((speed) => h("option", { value: speed }, `${speed}×`)));
     this.seed.addEventListener("change", () => this.reset());
     this.element = h(
       "footer", { class: "player", "aria-label": "Player", role: "toolbar" },
-      first, previous, back, this.play, forward, next, last, timeline.kinds, this.loop, timeline.section, this.reset_, seed, this.speeds, timeline.element,
-      h("div", { class: "readout" }, timeline.named, this.newest, this.place, this.rate),
+      first, previous, back, this.play, forward, next, last, timeline.kinds, this.loop, timeline.section, this.reset_, seed, this.speeds, timeline.element, readout,
     );
     model.on("scene", () => this.build());
     model.on("frame", (frame) => this.show(frame.text));
