@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hdf5_write.hpp"
+#include "hdf5/write.hpp"
 #include "layout.hpp"
 #include "supple/error.hpp"
 #include "supple/recording.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "hdf5_read.hpp"
+#include "hdf5/read.hpp"
 #include "layout.hpp"
 #include "reference_check.hpp"
 

@@ -14,9 +14,9 @@
 #include <system_error>
 #include <utility>
 
-#include "commit_driver.hpp"
 #include "datasets.hpp"
-#include "hdf5_read.hpp"
+#include "hdf5/commit_driver.hpp"
+#include "hdf5/read.hpp"
 #include "supple/error.hpp"
 #include "supple/recording.hpp"
 #include "xdmf_file.hpp"

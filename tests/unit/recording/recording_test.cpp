@@ -345,6 +345,22 @@ TEST(Recording, OldOneStaysUntilTheNewOneIsThere) {
   EXPECT_EQ(Recording(folder / "run.h5").frame_count(), 1u);
 }
 
+TEST(Recording, SaysThatItWasRecordedAgain) {
+  const TemporaryFolder folder;
+  soups(ContactKinds::intersection, 500).write(folder / "run.h5");
+  soups(ContactKinds::intersection, 2).write(folder / "other.h5");
+  const Recording recording(folder / "run.h5");
+  std::filesystem::copy_file(folder / "other.h5", folder / "run.h5",
+                             std::filesystem::copy_options::overwrite_existing);
+  try {
+    static_cast<void>(recording.frame(499));
+    FAIL() << "the lists of the frame are no longer in the file";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("was recorded again"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(static_cast<void>(recording.positions(499, 0)), Error);
+}
+
 TEST(Recording, EqualContentsAreEqualFiles) {
   const Contents contents = soups(ContactKinds::intersection, 20);
   const TemporaryFolder folder;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hdf5_handles.hpp"
+#include "hdf5/handles.hpp"
 #include "layout.hpp"
 
 namespace supple {

@@ -1,4 +1,4 @@
-#include "commit_driver.hpp"
+#include "hdf5/commit_driver.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "hdf5_handles.hpp"
+#include "hdf5/handles.hpp"
 
 // An HDF5 file driver that keeps a file valid at any moment.
 //

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hdf5_handles.hpp"
+#include "hdf5/handles.hpp"
 #include "layout.hpp"
 
 namespace supple {
@@ -21,7 +21,10 @@ class InputFile {
 
   hid_t id() const { return file_.id(); }
   const std::string& path() const { return path_; }
+  /// When it was opened.
   std::uint64_t size() const { return size_; }
+  /// Also when another file has its name now.
+  std::uint64_t size_now() const;
 
   bool has_attribute(const std::string& group, const char* name) const;
   bool has_item(const std::string& path) const;

@@ -1,4 +1,4 @@
-#include "hdf5_write.hpp"
+#include "hdf5/write.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,6 @@
-#include "hdf5_read.hpp"
+#include "hdf5/read.hpp"
+
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -8,7 +10,7 @@
 #include <memory>
 #include <system_error>
 
-#include "hdf5_write.hpp"
+#include "hdf5/write.hpp"
 #include "supple/error.hpp"
 #include "text.hpp"
 
@@ -102,14 +104,21 @@ bool is_stored_plainly(const DatasetHandle& dataset) {
 }  // namespace
 
 InputFile::InputFile(const std::string& path, bool may_link) : path_(path), file_(open_for_reading(path)) {
-  std::error_code error;
-  size_ = std::filesystem::file_size(path, error);
+  size_ = size_now();
   // A link could lead to any file of the user.
   OtherLinks other{may_link, {}};
   if (H5Lvisit(id(), H5_INDEX_NAME, H5_ITER_NATIVE, find_other_link, &other) != 0)
     fail(other.name, other.name.empty()
                          ? "the file is damaged, copy it again or record again"
                          : "is a soft or an external link, which recordings do not have here; record again");
+}
+
+std::uint64_t InputFile::size_now() const {
+  void* descriptor = nullptr;
+  check(H5Fget_vfd_handle(id(), H5P_DEFAULT, &descriptor));
+  struct stat file {};
+  return fstat(*static_cast<const int*>(descriptor), &file) == 0 ? static_cast<std::uint64_t>(file.st_size)
+                                                                 : 0;
 }
 
 DatasetHandle InputFile::open_dataset(const std::string& path, hid_t access) const {
@@ -295,6 +304,9 @@ void ColumnReader::read_from_file(std::uint64_t first, std::size_t count, std::b
       H5Dread(dataset_.id(), native_type(type_), in_memory.id(), in_file.id(), H5P_DEFAULT, to) < 0)
     file_->fail(path_, "cannot be read from row " + std::to_string(first) +
                            "; the file is damaged or cut short, copy it again or record again");
+  // HDF5 reads zeros behind the end of a file.
+  if (file_->size_now() < file_->size())
+    file_->fail(path_, "was overwritten while it was read; open it again");
 }
 
 }  // namespace supple
