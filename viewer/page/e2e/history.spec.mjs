@@ -1,6 +1,7 @@
 // The past: steps that a simulation or a program has taken, and recordings that grow.
 import assert from "node:assert/strict";
-import { renameSync } from "node:fs";
+import { spawn } from "node:child_process";
+import { existsSync, renameSync } from "node:fs";
 import { join } from "node:path";
 import { plotBox, runProgram, said, scenes, settled, simulateTo, step, until } from "./tools/harness.mjs";
 
@@ -208,7 +209,22 @@ async function followsARecording(stage) {
   await isAt(page, 39);
 }
 
+/** The page shows frames of a recording while a program writes them. */
+async function followsAProgramThatRecords(stage) {
+  const file = stage.file("run.h5");
+  const writer = spawn(stage.supple, ["simulate", join(scenes, "rabbit_pile.toml"), "--steps", "1000000", "--record", file, "--quiet"]);
+  stage.programs.push({ child: writer, stop: (signal) => writer.kill(signal) });
+  while (!existsSync(file)) await new Promise((done) => setTimeout(done, 20));
+  const { page } = await stage.view(file, "--follow");
+  const { range } = await facts(page);
+  await until(page, (last) => supple.model.frame.text.step > last + 5, range[1]);
+  writer.kill("SIGINT");
+  const { playing, past } = await facts(page);
+  assert.ok(playing && !past);
+}
+
 export const tests = [
+  ["follows a program that records", followsAProgramThatRecords],
   ["the past scrubs", scrubsTheTimeLine],
   ["keys step back, and it plays on", stepsBackByKeysAndPlaysOn],
   ["events are named by their pair", eventsAreNamed],
