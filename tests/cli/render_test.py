@@ -303,7 +303,7 @@ class Render(ProgramTest):
         for number in (signal.SIGINT, signal.SIGTERM):
             process = self.start()
             process.send_signal(number)
-            out, error = process.communicate(timeout=60)
+            out, error = process.communicate(timeout=600)
             self.assertEqual((process.returncode, out), (128 + number, ""))
             self.assertRegex(error, r"^supple: interrupted after \d+ of 100,001 pictures\n$")
             self.assert_nothing_is_left()
@@ -326,7 +326,7 @@ class Render(ProgramTest):
                 os.kill(int(number), signal.SIGKILL)
             except ProcessLookupError:
                 pass
-        _, error = process.communicate(timeout=60)
+        _, error = process.communicate(timeout=600)
         self.assertEqual(process.returncode, 2)
         self.assertRegex(error, r"^supple: .*(the browser has ended|the page has ended).*are saved\n$")
         self.assert_nothing_is_left()

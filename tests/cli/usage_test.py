@@ -209,7 +209,7 @@ class UsageErrors(ProgramTest):
                 if kind == "device" and ("pipe_scene.toml" in arguments or "frames.toml" in arguments):
                     continue  # these name the pipe
                 given = [word.replace("pipe", kind) for word in arguments]
-                done = Result(subprocess.run([PROGRAM, *given], cwd=self.folder, capture_output=True, text=True, timeout=120))
+                done = Result(subprocess.run([PROGRAM, *given], cwd=self.folder, capture_output=True, text=True, timeout=600))
                 self.assert_one_line_error(done, kind)
                 self.assertRegex(done.error, "regular file|a pipe or a device", given)
 

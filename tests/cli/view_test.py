@@ -37,7 +37,7 @@ class WebSocket:
     def __init__(self, url, path="/session"):
         host, query = re.fullmatch(r"http://([^/]*)/\?(.*)", url).groups()
         name, port = host.rsplit(":", 1)
-        self.socket = socket.create_connection((name, int(port)), timeout=60)
+        self.socket = socket.create_connection((name, int(port)), timeout=600)
         request = f"GET {path}?{query} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n"
         request += "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
         self.socket.sendall(request.encode())

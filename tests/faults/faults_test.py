@@ -185,7 +185,7 @@ class Run:
 
     def finish(self, process):
         try:
-            error = process.communicate(timeout=120)[1]
+            error = process.communicate(timeout=600)[1]
         except subprocess.TimeoutExpired:
             process.kill()
             error = process.communicate()[1] + b"it hangs"

@@ -23,14 +23,14 @@ class Jobs(RanksTest):
     def test_a_killed_rank_ends_the_job(self):
         job = self.start_long_run()
         os.kill(eventually(lambda: pid_of_rank(1, job.pid)), signal.SIGKILL)
-        _, error = job.communicate(timeout=60)
+        _, error = job.communicate(timeout=600)
         self.assertNotEqual(job.returncode, 0)
         self.assertRegex(error, r"process rank 1 .*exited on signal 9")
 
     def test_a_signal_at_one_rank_ends_all_with_whole_files(self):
         job = self.start_long_run()
         os.kill(eventually(lambda: pid_of_rank(1, job.pid)), signal.SIGTERM)
-        _, error = job.communicate(timeout=60)
+        _, error = job.communicate(timeout=600)
         self.assertEqual(job.returncode, 128 + signal.SIGTERM)
         self.assertEqual(error.count("supple: interrupted after"), 1, error)
         report = json.loads((self.folder / "out.json").read_text())

@@ -172,7 +172,7 @@ class Recordings(RanksTest):
             eventually(lambda: "frame" in self.run_here("diff", "run.h5", "run.h5").out)
             for pid in pids:
                 os.kill(pid, signal.SIGKILL)
-            job.communicate(timeout=60)
+            job.communicate(timeout=600)
             self.assertNotEqual(job.returncode, 0)
             done = self.run_here("diff", "run.h5", "run.h5")
             self.assertEqual((done.status, done.error), (0, ""))

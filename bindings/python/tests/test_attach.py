@@ -31,7 +31,7 @@ class Page:
 
     def __init__(self, url):
         parts = urllib.parse.urlsplit(url)
-        self.socket = socket.create_connection((parts.hostname, parts.port), timeout=60)
+        self.socket = socket.create_connection((parts.hostname, parts.port), timeout=600)
         key = base64.b64encode(os.urandom(16)).decode()
         self.socket.sendall(
             f"GET /session?{parts.query} HTTP/1.1\r\nHost: {parts.netloc}\r\nUpgrade: websocket\r\n"
@@ -326,6 +326,6 @@ def test_killed_program_closes_the_connection():
 def test_program_ends_without_closing_the_view():
     script = PAUSED.replace("wait_for_page=True", "wait_for_page=False").replace("while True", "if True")
     done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=600, check=False
     )
     assert done.returncode == 0 and done.stderr == ""

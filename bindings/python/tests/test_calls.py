@@ -139,7 +139,7 @@ if child:
     raise SystemExit(os.waitpid(child, 0)[1])
 """
     done = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", program], capture_output=True, timeout=60, check=False
+        [sys.executable, "-W", "ignore", "-c", program], capture_output=True, timeout=600, check=False
     )
     assert done.returncode == 0, done.stderr
 
@@ -206,6 +206,6 @@ threading.Thread(target=work, daemon=True).start()
 time.sleep(0.2)
 """
         done = subprocess.run(
-            [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False
+            [sys.executable, "-c", program], capture_output=True, text=True, timeout=600, check=False
         )
         assert done.returncode == 0 and "terminate" not in done.stderr, done.stderr

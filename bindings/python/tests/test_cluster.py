@@ -42,7 +42,7 @@ def run(*command, path=PATH, **options):
         env={**os.environ, "PATH": path},
         capture_output=True,
         text=True,
-        timeout=240,
+        timeout=600,
         check=False,
         **options,
     )

@@ -35,7 +35,7 @@ def run_on_ranks(ranks, program):
         },
         capture_output=True,
         text=True,
-        timeout=240,
+        timeout=600,
         check=False,
     )
     assert done.returncode == 0, done.stderr

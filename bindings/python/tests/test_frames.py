@@ -309,7 +309,7 @@ if __name__ == "__main__":
         env={**os.environ, "PYTHONPATH": path},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=False,
         # A process in the background ignores Ctrl-C unless its handler is set.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
@@ -423,7 +423,7 @@ def test_mpi(sources, tmp_path):
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=False,
     )
     assert done.returncode == 0 and done.stdout == f"3 2 True {FRAMES}\n", done.stdout + done.stderr
