@@ -232,9 +232,9 @@ std::vector<Vec3d> OpenFiles::positions(std::uint64_t frame, std::size_t object)
 
 }  // namespace
 
-/// Reads a recording that may still grow. A run that records changes the files between two reads of HDF5,
-/// which then finds new parts of the index beyond the end of the file that it knows. So what fails is done
-/// again with the files opened anew, as long as they change.
+/// Reads a recording that may still grow. A run changes its files between two reads of HDF5; HDF5 then finds
+/// parts of its index behind the end of the file that it knows, and fails. `read` opens the files again and
+/// repeats what failed, as long as the files change.
 class Recording::Implementation {
  public:
   explicit Implementation(std::string path) : path_(std::move(path)) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -10,6 +12,7 @@
 #include "supple/recording.hpp"
 #include "supple/result_lists.hpp"
 #include "supple/scene.hpp"
+#include "support/soups.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
 namespace supple {
@@ -120,6 +123,27 @@ inline Contents simulate_solids(std::uint64_t frames) {
   };
   return simulate({make_box({2, 2, 2}, 2), make_icosphere(3), make_box({0.5, 0.5, 0.5}, 2), make_cloth(5, 5)},
                   {fixed, solid, solid, folding}, scene, frames, offset_of);
+}
+
+inline void expect_equal(const RecordedFrame& a, const RecordedFrame& b) {
+  EXPECT_EQ(a.time, b.time);
+  for_each_list([&](const auto& list, auto member) { EXPECT_EQ(member(a), member(b)) << list.name; });
+  for_each_leaf([](const auto& field, const auto& p, const auto& q) { EXPECT_EQ(p, q) << field.name; },
+                a.stats, b.stats);
+}
+
+/// A soup with self-collision, a moving soup and a static soup.
+inline Contents soups(ContactKinds mode, std::uint64_t frames = 12, bool colliding_vertices = false) {
+  ObjectOptions folding, fixed;
+  folding.self_collision = true;
+  folding.margin = fixed.margin = 0.01;
+  fixed.is_static = true;
+  SceneOptions scene;
+  scene.contacts = mode;
+  scene.threads = 1;
+  scene.comparison.colliding_vertices = colliding_vertices;
+  return simulate({random_soup(30, 1, 0.5, 1), random_soup(20, 1, 0.6, 2), random_soup(20, 1, 0.6, 3)},
+                  {folding, ObjectOptions{}, fixed}, scene, frames);
 }
 
 }  // namespace supple

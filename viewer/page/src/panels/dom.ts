@@ -66,8 +66,8 @@ export function setIcon(button: HTMLButtonElement, name: string, label: string, 
 const refills = new WeakMap<HTMLElement, ReturnType<typeof setTimeout>>();
 
 /**
- * Replaces content that changes while a scene plays. The button with the focus keeps it, and a pressed button stays
- * until it is released: only then it is clicked.
+ * Replaces content that changes while a scene plays. The button at the same place gets the focus. While somebody
+ * presses a button, it waits: browsers send a click only to a button that stays from the press to the release.
  */
 export function refill(element: HTMLElement, ...content: Node[]): void {
   clearTimeout(refills.get(element));

@@ -76,7 +76,7 @@ export class NodePairs {
   private draw(): void {
     const { objects, answer } = this;
     if (!objects) {
-      this.levels.replaceChildren();
+      refill(this.levels);
       this.names.textContent = "";
       return;
     }

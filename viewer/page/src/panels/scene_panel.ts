@@ -98,7 +98,7 @@ export class ScenePanel {
     this.sortRows();
   }
 
-  /** Whether the scene fills a layer. Beside kinds that were asked for, intersections count only when they have occurred. */
+  /** Whether the scene fills a layer. When it tests other kinds of contacts, too, a layer of intersections waits for the first one. */
   private isProduced({ layer, kinds, has }: LayerRow): boolean {
     const { frame, scene } = this.model;
     if (frame && has && has(frame) > 0) this.seen.add(layer);
