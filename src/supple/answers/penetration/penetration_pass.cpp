@@ -90,7 +90,8 @@ void PenetrationPass::run_task(const Task& task, const DetectResult& result, Wor
   const PenetratedObject &inner = objects_[task.inner], &outer = objects_[task.outer];
   if (task.inner != task.outer && outer.is_solid) find_inside(task, result, worker);
   if (task.inner <= task.outer && task.group != nullptr)
-    worker.curve_finder.find({inner.surface, outer.surface, task.inner == task.outer, task.group, &result},
+    worker.curve_finder.find({inner.surface, outer.surface, &inner.queried, &outer.queried, inner.is_solid,
+                              outer.is_solid, task.inner == task.outer, task.group, &result},
                              worker.curves);
 }
 
