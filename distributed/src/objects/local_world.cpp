@@ -207,7 +207,7 @@ void LocalWorld::place(GuestObject& object) {
 /// Takes the positions that a cluster had in the last step.
 void LocalWorld::fetch(const GuestObject& object, GuestCluster& cluster) const {
   const Placement& placement = world_[object.slot].placement();
-  cluster.is_double = placement.is_double();
+  cluster.is_double = placement.shape().is_double();
   Writer to(cluster.kept);
   const auto put = [&](const auto& position) {
     for (const std::uint32_t v : cluster.local) {

@@ -8,6 +8,7 @@
 
 #include "contact/distance/element_distance.hpp"
 #include "contact/distance/ray_triangle.hpp"
+#include "contact/distance/upward_ray.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/query_kernels.hpp"
@@ -15,7 +16,6 @@
 #include "queries/nearest_triangle.hpp"
 #include "queries/ray_line.hpp"
 #include "queries/support_plane.hpp"
-#include "queries/upward_ray.hpp"
 
 namespace supple {
 namespace {

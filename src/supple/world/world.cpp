@@ -138,7 +138,7 @@ void World::set_vertices(ObjectId id, std::span<const std::uint32_t> vertices,
          std::to_string(vertices.size()) + " vertices of " + name + "; give one for each vertex");
   }
   for (const std::uint32_t vertex : vertices) check_vertex(found, vertex, "set_vertices");
-  const bool is_double = found.placement().is_double();
+  const bool is_double = found.placement().shape().is_double();
   if (!vertices.empty() && positions.is_double() != is_double) {
     fail("set_vertices: the positions are " + std::string(is_double ? "float" : "double") + ", those of " +
          name + " are " + (is_double ? "double" : "float") + "; give both in one precision");
@@ -170,7 +170,12 @@ void World::translate(ObjectId id, const Vec3d& offset) {
 }
 
 void World::set_transform(ObjectId id, const RigidTransform& transform) {
-  movable_object(id, "set_transform").move().set_transform(transform, parallel);
+  WorldObject& found = movable_object(id, "set_transform");
+  if (found.options.solid && Placement::sign_of(transform) == 0) {
+    fail("set_transform: the matrix is singular, so it makes " + found.options.name +
+         " flat, which is solid; give a matrix whose determinant is not 0");
+  }
+  found.move().set_transform(transform, parallel);
   mark_changed();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -34,9 +35,10 @@ void Placement::set_motion(const PositionsView& from, const PositionsView& to, c
 
 /// New positions discard all earlier transforms.
 void Placement::place_afresh() {
-  has_motion_ = has_shape_ = is_baked_ = false;
+  has_motion_ = has_shape_ = is_baked_ = is_mirrored_ = false;
   rotation_ = RigidTransform{}.rotation;
   translation_ = {};
+  ++shape_version_;
   change_all();
 }
 
@@ -59,6 +61,7 @@ void Placement::set_vertices(std::span<const std::uint32_t> vertices, const Posi
   }
   ++version_;
   if (!is_listed) forget_moved();
+  if (vertices.size() > end_.size() / 8) ++shape_version_;
 }
 
 void Placement::translate(Vec3d offset, const Parallel& parallel) {
@@ -72,8 +75,15 @@ void Placement::set_transform(const RigidTransform& transform, const Parallel& p
   translation_ = transform.translation;
   if (transform.rotation == rotation_) return;
   rotation_ = transform.rotation;
+  is_mirrored_ = sign_of(transform) < 0;
   keep_shape();
   apply({}, parallel);
+}
+
+int Placement::sign_of(const RigidTransform& transform) {
+  const auto& r = transform.rotation;
+  bool used_exact = false;
+  return orient3d({}, {r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}, used_exact);
 }
 
 /// The object comes to rest at the end of its path, and its translation is no longer baked.

@@ -30,6 +30,8 @@ class Placement {
                     const Parallel& parallel);
   void translate(Vec3d offset, const Parallel& parallel);
   void set_transform(const RigidTransform& transform, const Parallel& parallel);
+  /// The sign of the determinant of the matrix, which is finite. Exact.
+  static int sign_of(const RigidTransform& transform);
 
   /// The ends of the path without the translation. Both are the same buffer for an object at rest.
   const VertexBuffer& start() const { return has_motion_ ? start_ : end_; }
@@ -57,8 +59,12 @@ class Placement {
     moved_.clear();
     moved_since_ = version_;
   }
-  /// Whether the positions p are in double precision.
-  bool is_double() const { return (has_shape_ ? shape_ : end_).is_double(); }
+  /// The positions p.
+  const VertexBuffer& shape() const { return has_shape_ ? shape_ : end_; }
+  /// Changes when all positions p change, or more than an eighth at once; never 0.
+  std::uint64_t shape_version() const { return shape_version_; }
+  /// Whether the determinant of R is negative.
+  bool is_mirrored() const { return is_mirrored_; }
 
  private:
   Vec3d rotated(const Vec3d& p) const;
@@ -73,10 +79,10 @@ class Placement {
   VertexBuffer end_;
   VertexBuffer start_;  // of an object on a path
   VertexBuffer shape_;  // p, once a transform made `end_` differ from it
-  bool has_motion_ = false, has_shape_ = false, is_baked_ = false;
+  bool has_motion_ = false, has_shape_ = false, is_baked_ = false, is_mirrored_ = false;
   std::array<double, 9> rotation_ = RigidTransform{}.rotation;
   Vec3d translation_;
-  std::uint64_t version_ = 1;
+  std::uint64_t version_ = 1, shape_version_ = 1;
   std::uint64_t moved_since_ = 1;     // version
   std::vector<std::uint32_t> moved_;  // since then
 };

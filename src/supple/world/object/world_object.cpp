@@ -221,6 +221,21 @@ const VertexTriangles* WorldObject::neighbours() {
   return &*neighbours_;
 }
 
+std::span<const std::uint8_t> WorldObject::inward_triangles() {
+  if (!options.solid) return {};
+  const PositionsView positions = placement_.shape().view();
+  if (!orientation_) {
+    std::vector<Triangle> faces;
+    faces.reserve(face_count_);
+    for (std::uint32_t t = 0; t < face_count_; ++t) faces.push_back(octree_.user_triangle(t));
+    orientation_.emplace(std::move(faces), positions);
+  } else if (oriented_version_ != placement_.shape_version()) {
+    orientation_->judge(positions);
+  }
+  oriented_version_ = placement_.shape_version();
+  return orientation_->inward();
+}
+
 void WorldObject::measure_built_octree(const Parallel& parallel) {
   resting_.update(octree_, placement_, parallel);
   rebuild_policy_.set_cost_when_built(current_query_cost());

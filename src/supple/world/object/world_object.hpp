@@ -14,6 +14,7 @@
 #include "supple/options.hpp"
 #include "world/object/fine_boxes.hpp"
 #include "world/object/moving_shape.hpp"
+#include "world/object/orientation.hpp"
 #include "world/object/placement.hpp"
 #include "world/object/rebuild_policy.hpp"
 #include "world/object/resting_shape.hpp"
@@ -145,6 +146,11 @@ class WorldObject {
   /// The triangles around each vertex in octree order, without inert ones, or null when neighbours are not
   /// tested. Takes O(n) when the octree or the inert triangles have changed.
   const VertexTriangles* neighbours();
+  /// `Orientation::inward` of a solid at the positions of its shape; empty for other objects. Takes O(n) when
+  /// these have changed.
+  std::span<const std::uint8_t> inward_triangles();
+  /// `Orientation::is_flat` at the last call of `inward_triangles`.
+  bool is_flat() const { return orientation_ && orientation_->is_flat(); }
   /// Checks the shapes that are up to date.
   std::string validate() const;
   OctreeStatistics octree_statistics() const;
@@ -182,6 +188,8 @@ class WorldObject {
   std::optional<VertexTriangles> vertex_triangles_;
   bool leaves_out_inert_ = false;  // `vertex_triangles_` does
   std::optional<VertexTriangles> neighbours_;
+  std::optional<Orientation> orientation_;
+  std::uint64_t oriented_version_ = 0;  // of the shape
   bool neighbours_leave_out_inert_ = false;
   SearchedShapes updated_;  // by the last update
   Aabb box_;

@@ -1,0 +1,38 @@
+// Properties of the depths of curves, on random pairs of solids in general and in degenerate position.
+// SUPPLE_DEPTH_PAIRS is the number of pairs, and SUPPLE_DEPTH_SEED the first seed; each pair has its own.
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "support/depth_properties.hpp"
+#include "support/random.hpp"
+
+namespace supple {
+namespace {
+
+std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
+  const char* const text = std::getenv(variable);
+  return text != nullptr ? std::stoull(text) : otherwise;
+}
+
+TEST(DepthProperties, OfRandomSolids) {
+  const std::uint64_t first = number_of("SUPPLE_DEPTH_SEED", 1),
+                      count = number_of("SUPPLE_DEPTH_PAIRS", 2000);
+  std::uint64_t failed = 0;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    RandomNumbers random(seed);
+    const solids::SolidPair pair = solids::random_pair(random);
+    const std::string fault = solids::PairChecker(pair).fault();
+    if (fault.empty()) continue;
+    ++failed;
+    if (failed <= 20)
+      ADD_FAILURE() << "seed " << seed << ", " << pair.a.kind << " and " << pair.b.kind << ": " << fault;
+  }
+  EXPECT_EQ(failed, 0u) << "of " << count;
+}
+
+}  // namespace
+}  // namespace supple
