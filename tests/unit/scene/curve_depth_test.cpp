@@ -21,7 +21,7 @@ namespace {
 using Rational = boost::multiprecision::cpp_rational;
 using RationalVector = std::array<Rational, 3>;
 
-constexpr SceneOptions penetration{.contacts = ContactKinds::penetration};
+constexpr SceneOptions penetration{.contacts = ContactKinds::penetration, .curves = true};
 
 RationalVector exact(const Vec3d& v) {
   return {Rational(v.x), Rational(v.y), Rational(v.z)};
