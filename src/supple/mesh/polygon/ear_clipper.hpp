@@ -90,7 +90,7 @@ class EarClipper {
   std::vector<std::uint32_t> first_waiting_;  ///< of each corner, an index into `waiting_`
   std::vector<Waiting> waiting_;
   std::vector<Triangle> fills_;  ///< without area, between the loops and the outline
-  /// Of each corner: no edge at its place goes into the angle to its left, which is inside.
+  /// Whether no edge at the place of a corner goes into the angle to its left, which is inside.
   std::vector<bool> is_settled_;
   std::vector<Ray> rays_;
   std::uint64_t tests_left_ = 0;  ///< of a corner with a triangle

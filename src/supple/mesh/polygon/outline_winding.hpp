@@ -10,8 +10,8 @@ struct OutlineWinding {
   /// Two edges cross, or the outline winds around some area neither once nor not at all. Edges and corners
   /// that touch or coincide do not cross.
   bool crosses = false;
-  /// Of each corner of an outline that does not cross itself: whether the area directly below it is inside.
-  /// Below is to the right of the direction of `OutlineView::before`.
+  /// Whether the area directly below each corner is inside, for an outline that does not cross itself. Below
+  /// is to the right of the direction of `OutlineView::before`.
   std::vector<bool> is_inside_below{};
 };
 
