@@ -4,8 +4,10 @@
 # tools/coverage.py needs; --determinism adds the compilers and emulators of tools/check_determinism.py;
 # --python adds what builds and tests the Python package; --without-viewer leaves out npm and the compiler for
 # WebAssembly.
-# Returns quickly when everything is installed.
+# Returns quickly when everything is installed. At the end, tools/get_ufbx.sh brings the sources of ufbx.
 set -euo pipefail
+folder=$(cd "$(dirname "$0")" && pwd)
+trap '"$folder"/get_ufbx.sh' EXIT
 
 packages=(
   cmake ninja-build g++ python3
@@ -38,6 +40,9 @@ fi
 if [ "${1:-}" = "--determinism" ]; then
   packages+=(g++-aarch64-linux-gnu g++-riscv64-linux-gnu qemu-user clang-14 libc++-19-dev libc++abi-19-dev)
 fi
+
+# It downloads ufbx, which reads FBX files.
+command -v cargo >/dev/null || [ -f "$folder/../build/ufbx/ufbx.c" ] || packages+=(cargo)
 
 if ! command -v dpkg-query >/dev/null; then
   echo "install_dependencies: not a Debian system; if the build misses something, install your system's equivalents of: ${packages[*]}" >&2

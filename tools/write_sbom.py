@@ -59,6 +59,16 @@ def read_headers(build):
     return set(headers.values())
 
 
+def sources_in(build):
+    """The version of ufbx, whose sources are compiled into the program from any folder; empty without it."""
+    for line in lines_of("ninja", "-C", build, "-t", "deps"):
+        path = pathlib.Path(build, line.strip())
+        if path.name == "ufbx.h" and path.exists() and (path.parent / "ufbx.c").exists():
+            found = re.search(r"#define UFBX_HEADER_VERSION ufbx_pack_version\((\d+), (\d+), (\d+)\)", path.read_text())
+            return ".".join(found.groups()) if found else ""
+    return ""
+
+
 def page_packages():
     folder = ROOT / "viewer" / "page"
     imported = set()
@@ -92,6 +102,9 @@ def main():
         packages.append(package("Debian", name, of_debian, licence_of(name), f"pkg:deb/debian/{name}@{of_debian}"))
         relation = "DYNAMIC_LINK" if name in linked else "DEPENDS_ON"
         relations.append((packages[0]["SPDXID"], relation, packages[-1]["SPDXID"]))
+    if ufbx := sources_in(build):
+        packages.append(package("Source", "ufbx", ufbx, "MIT OR Unlicense", f"pkg:github/ufbx/ufbx@v{ufbx}"))
+        relations.append((packages[0]["SPDXID"], "CONTAINS", packages[-1]["SPDXID"]))
     for name, locked in page_packages().items():
         packages.append(package("npm", name, locked["version"], locked.get("license", "NOASSERTION"),
                                 f"pkg:npm/{name}@{locked['version']}"))

@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -38,6 +40,25 @@ extern "C" void remember(int signal) {
   errno = error;
 }
 
+using Clock = std::chrono::steady_clock;
+std::optional<Clock::time_point> time_limit_start;
+std::string message_of_limit;  // complete before the signal
+
+extern "C" void end_while_reading(int) {
+  [[maybe_unused]] const ssize_t written =
+      write(STDERR_FILENO, message_of_limit.data(), message_of_limit.size());
+  std::_Exit(exit_unusable);
+}
+
+void set_alarm(double seconds) {
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  timer.it_value.tv_usec = static_cast<suseconds_t>((seconds - std::floor(seconds)) * 999999);
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+constexpr double most_seconds = 1e9;
+
 /// Waits for an event, or until the time. Returns whether there was an event.
 bool wait_for_event(std::optional<std::chrono::steady_clock::time_point> until) {
   using namespace std::chrono;
@@ -54,6 +75,15 @@ bool wait_for_event(std::optional<std::chrono::steady_clock::time_point> until) 
 
 }  // namespace
 
+void start_time_limit(double seconds) {
+  constexpr double grace = 0.5;
+  time_limit_start = Clock::now();
+  message_of_limit = fmt::format(
+      "supple: the time limit of {} s ended the run while its input was read; nothing was tested\n", seconds);
+  std::signal(SIGALRM, end_while_reading);
+  set_alarm(std::min(seconds, most_seconds) + grace);
+}
+
 Interruption::Interruption() {
   received = 0;
   struct sigaction action {};
@@ -67,10 +97,10 @@ Interruption::Interruption() {
 Interruption::Interruption(std::optional<double> seconds,
                            std::function<void(const Interruption&)> when_overdue)
     : Interruption() {
-  constexpr double most_seconds = 1e9;
+  set_alarm(0);
   if (seconds) {
     const std::chrono::duration<double> limit(std::min(*seconds, most_seconds));
-    deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
+    deadline_ = time_limit_start.value_or(Clock::now()) + std::chrono::duration_cast<Clock::duration>(limit);
   }
   event = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (event < 0) return;

@@ -10,15 +10,19 @@
 
 namespace supple::cli {
 
+/// Starts the time of `--time-limit` in seconds. While the input is read, nothing can be written; half a
+/// second after the limit, the program then ends with one line. `Interruption` takes over afterwards.
+void start_time_limit(double seconds);
+
 /// While this object exists, SIGINT and SIGTERM do not end the program but are remembered, so that the
 /// current step can finish and files are closed. A second signal of the same kind ends the program
 /// immediately.
 class Interruption {
  public:
   Interruption();
-  /// Also ends the work after a time in seconds, and with `token` the call that runs then. Where a call goes
-  /// on for half a second, `when_overdue` is called from another thread; it must write what there is and end
-  /// the program.
+  /// Also ends the work after a time in seconds, which counts from `start_time_limit`, and with `token` the
+  /// call that runs then. Where a call goes on for half a second, `when_overdue` is called from another
+  /// thread; it must write what there is and end the program.
   Interruption(std::optional<double> seconds, std::function<void(const Interruption&)> when_overdue);
   ~Interruption();
   Interruption(const Interruption&) = delete;

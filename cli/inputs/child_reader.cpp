@@ -2,11 +2,15 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <cstring>
 #include <new>
@@ -105,6 +109,9 @@ bool read_file(std::span<const char> bytes, MeshFile& file) {
 }
 
 [[noreturn]] void run_child(const Pipe& pipe, const std::filesystem::path& path) {
+#ifdef __linux__
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a time limit or a signal ends the program that waits
+#endif
   // Assimp prints when it fails.
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);

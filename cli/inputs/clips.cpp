@@ -27,7 +27,8 @@ ClipPlayer::ClipPlayer(const std::filesystem::path& path, const std::optional<st
     : file_(path.string()), animation_(path) {
   const std::vector<std::string> names = names_of(animation_);
   if (names.empty())
-    throw Error(one_line(fmt::format("{}: has no clips; it is a mesh without an animation", file_)));
+    throw Error(
+        one_line(fmt::format("{}: has no clips; it is a mesh without an animation that moves it", file_)));
   if (!clip) return;
   const auto found = std::find(names.begin(), names.end(), one_line(*clip));
   if (found == names.end())

@@ -159,6 +159,7 @@ Input read_meshes(const std::vector<std::string>& names, const MeshReading& read
   for (const fs::path& path : input.files) {
     MeshFile file = read_mesh(path, reading.conversion);
     frames.push_back(file.frame);
+    if (const std::string note = note_of_reader(path); !note.empty()) input.notes.push_back(note);
     InputObject& object = input.objects.emplace_back(InputObject{std::move(file.mesh), {}, {}});
     if (file.clips.empty()) continue;
     if (reading.clips.is_given())
@@ -168,8 +169,8 @@ Input read_meshes(const std::vector<std::string>& names, const MeshReading& read
   }
   if (is_given(reading.conversion)) check_conversion(frames, reading.conversion);
   if ((reading.clips.clip || reading.clips.fps) && !input.frames)
-    throw Error(
-        fmt::format("{}: no file has an animation; leave it out", reading.clips.clip ? "--clip" : "--fps"));
+    throw Error(fmt::format("{}: no file has an animation that moves its mesh; leave it out",
+                            reading.clips.clip ? "--clip" : "--fps"));
   if (!reading.cache.empty()) {
     if (input.objects.size() != 1 || input.frames)
       throw Error("--cache: needs one mesh without a clip; use a scene file for more objects");
@@ -197,6 +198,15 @@ std::string name_of(const Input& input, ObjectId object) {
 std::string clips_note(const fs::path& path, const std::vector<std::string>& clips, const char* advice) {
   return one_line(fmt::format("{}: has {}: {}; {}", path.string(), counted(clips.size(), "clip"),
                               fmt::join(clips, ", "), advice));
+}
+
+std::string note_of_reader(const fs::path& path) {
+  if (lower_case_extension(path) != ".fbx" || !is_read_by_assimp(path)) return {};
+  return one_line(
+      fmt::format("{}: read through Assimp, because this build is without ufbx: the pose of rotated, scaled, "
+                  "deformed and "
+                  "animated nodes can be wrong; build with ufbx, or export it as glTF",
+                  path.string()));
 }
 
 void print_notes(const Input& input) {

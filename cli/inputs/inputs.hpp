@@ -84,6 +84,8 @@ Input read_sequence(const std::vector<std::string>& names, const CoordinateConve
 /// `walk.glb: has 2 clips: walk, run; ` and the advice.
 std::string clips_note(const std::filesystem::path& path, const std::vector<std::string>& clips,
                        const char* advice);
+/// What the reader of the file may get wrong; empty for most.
+std::string note_of_reader(const std::filesystem::path& path);
 /// The number and name of an object, for tables.
 std::string name_of(const Input& input, ObjectId object);
 /// Prints the notes of an input to standard error.

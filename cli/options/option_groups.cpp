@@ -6,6 +6,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "base/interruption.hpp"
 #include "options/option_needs.hpp"
 #include "session/settings.hpp"
 #include "supple/format_descriptions.hpp"
@@ -35,10 +36,14 @@ CLI::Option* add_max_contacts(CLI::App& app, RunLimits& limits, const char* desc
 
 CLI::Option* add_time_limit(CLI::App& app, RunLimits& limits) {
   return add_real(
-      app, "--time-limit", ValueRange::above(0), "s", [&limits](double seconds) { limits.seconds = seconds; },
-      "End this wall-clock time after the input was read: the results so far are written, and the JSON and "
-      "CSV "
-      "say that they are truncated (default: no limit)");
+      app, "--time-limit", ValueRange::above(0), "s",
+      [&limits](double seconds) {
+        limits.seconds = seconds;
+        start_time_limit(seconds);
+      },
+      "End this wall-clock time after the start: the results so far are written, and the JSON and CSV say "
+      "that "
+      "they are truncated; if the input is still being read then, nothing is written (default: no limit)");
 }
 
 void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects, bool are_tested) {

@@ -254,6 +254,9 @@ void read_objects(const toml::table& table, const fs::path& path, const std::str
   const Shape shape = read_shape(reader, path.parent_path(), motion.frames(), conversion, budget, shapes);
   const TriangleMesh& mesh = shape.mesh;
   reader.finish();
+  if (shape.file) {
+    if (const std::string note = note_of_reader(*shape.file); !note.empty()) input.notes.push_back(note);
+  }
   motion.read_files(shape.file ? &*shape.file : nullptr, input.simulation.time_step, input.notes);
   if (motion.empty() && !shape.clips.empty())
     input.notes.push_back(clips_note(*shape.file, shape.clips, "motion = { kind = \"clip\" } plays one"));

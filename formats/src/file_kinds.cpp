@@ -4,6 +4,7 @@
 #include <array>
 #include <fstream>
 #include <initializer_list>
+#include <iterator>
 #include <span>
 
 #include "core/error.hpp"
@@ -18,9 +19,15 @@ namespace {
 constexpr std::string_view from_modellers = "export it as glTF (.glb), FBX, OBJ or PLY";
 constexpr std::string_view from_animation = "export it as glTF (.glb) or FBX, or each frame as OBJ or PLY";
 constexpr std::string_view from_cad = "export its tessellated surface as 3MF, STL, OBJ or PLY";
+// Only for what meshio reads. Its .msh is Fluent's unless it is told otherwise.
+constexpr std::string_view from_meshio =
+    "convert it to VTK's format, for example by: meshio convert FILE out.vtu";
 constexpr std::string_view from_simulation =
-    "convert it to Gmsh's .msh or VTK's legacy .vtk, for example with meshio";
-constexpr std::string_view from_vtk = "save it as legacy .vtk (in ParaView: Save Data, Legacy VTK Files)";
+    "export it as VTK (.vtu or .vtk) or as Gmsh's .msh from the program that made it";
+constexpr std::string_view from_fluent =
+    "convert it by: meshio convert FILE out.vtu; for Gmsh's .msh, add --output-format gmsh";
+constexpr std::string_view from_vtk =
+    "save its data as .vtu or .vtp, or as legacy .vtk (in ParaView: Save Data)";
 constexpr std::string_view from_points =
     "it has points but no triangles; reconstruct a surface and save it as PLY";
 constexpr std::string_view from_voxels = "extract a surface and save it as PLY";
@@ -42,7 +49,6 @@ constexpr Unsupported unsupported[] = {
     {".c4d", "a Cinema 4D scene", from_animation},
     {".hip", "a Houdini scene", from_animation},
     {".hiplc", "a Houdini scene", from_animation},
-    {".geo", "Houdini's geometry", from_animation},
     {".bgeo", "Houdini's geometry", from_animation},
     {".vrm", "VRM", from_animation},
     {".skp", "a SketchUp model", from_modellers},
@@ -74,35 +80,36 @@ constexpr Unsupported unsupported[] = {
     {".sat", "ACIS", from_cad},
     {".jt", "JT", from_cad},
     {".scad", "an OpenSCAD program", from_cad},
-    {".vtu", "VTK's XML format", from_vtk},
-    {".vtp", "VTK's XML format", from_vtk},
-    {".vtm", "VTK's XML format", from_vtk},
-    {".pvd", "VTK's XML format", from_vtk},
-    {".pvtu", "VTK's XML format", from_vtk},
+    {".vtm", "a list of VTK's files", from_vtk},
+    {".pvd", "a list of VTK's files", from_vtk},
+    {".pvtu", "a list of VTK's files", from_vtk},
+    {".pvtp", "a list of VTK's files", from_vtk},
+    {".vts", "a structured grid of VTK", from_vtk},
+    {".vtr", "a structured grid of VTK", from_vtk},
     {".vtkhdf", "VTK's HDF5 format", from_vtk},
     {".vti", "an image of VTK", from_voxels},
     {".vdb", "OpenVDB", from_voxels},
     {".nrrd", "an image of voxels", from_voxels},
     {".nii", "an image of voxels", from_voxels},
     {".mha", "an image of voxels", from_voxels},
-    {".xdmf", "XDMF", from_simulation},
-    {".xmf", "XDMF", from_simulation},
-    {".exo", "Exodus", from_simulation},
-    {".e", "Exodus", from_simulation},
-    {".cgns", "CGNS", from_simulation},
-    {".med", "MED of Salome", from_simulation},
+    {".xdmf", "XDMF", from_meshio},
+    {".xmf", "XDMF", from_meshio},
+    {".exo", "Exodus", from_meshio},
+    {".e", "Exodus", from_meshio},
+    {".cgns", "CGNS", from_meshio},
+    {".med", "MED of Salome", from_meshio},
     {".unv", "I-deas UNV", from_simulation},
-    {".inp", "an Abaqus model", from_simulation},
-    {".bdf", "Nastran", from_simulation},
-    {".nas", "Nastran", from_simulation},
-    {".fem", "Nastran", from_simulation},
+    {".inp", "an Abaqus model", from_meshio},
+    {".bdf", "Nastran", from_meshio},
+    {".nas", "Nastran", from_meshio},
+    {".fem", "Nastran", from_meshio},
     {".k", "an LS-DYNA model", from_simulation},
     {".key", "an LS-DYNA model", from_simulation},
     {".cdb", "an Ansys model", from_simulation},
     {".feb", "a FEBio model", from_simulation},
-    {".su2", "SU2", from_simulation},
-    {".ugrid", "UGRID", from_simulation},
-    {".vol", "a Netgen mesh", from_simulation},
+    {".su2", "SU2", from_meshio},
+    {".ugrid", "UGRID", from_meshio},
+    {".vol", "a Netgen mesh", from_meshio},
     {".poly", "an input of TetGen", "give the .node file of TetGen's output"},
     {".smesh", "an input of TetGen", "give the .node file of TetGen's output"},
     {".edge", "TetGen's list of edges", "give the .node file, next to its .ele and .face files"},
@@ -155,6 +162,12 @@ bool is_xml(std::string_view start, std::string_view element) {
   return false;
 }
 
+// OFF with letters for what its vertices have.
+bool is_off(std::string_view start) {
+  const std::size_t keyword = start.find_first_not_of("STCN4n");
+  return keyword <= 6 && starts_with_word(start.substr(keyword), {"OFF"});
+}
+
 // Whether a line has a vertex and all lines before it have words of OBJ.
 bool is_obj(std::string_view start) {
   if (is_utf16(start)) return false;
@@ -192,12 +205,7 @@ constexpr Kind kinds[] = {
      {},
      "download the file itself"},
     {"PLY", [](std::string_view s) { return starts_with_word(s, {"ply"}); }, {".ply"}, {}},
-    {"OFF",
-     [](std::string_view s) {
-       return starts_with_word(s, {"OFF", "COFF", "NOFF", "CNOFF", "STOFF"});
-     },
-     {".off"},
-     {}},
+    {"OFF", is_off, {".off"}, {}},
     {"STL",
      [](std::string_view s) {
        return starts_with_word(s, {"solid"}) && s.find("facet") != std::string_view::npos;
@@ -222,21 +230,24 @@ constexpr Kind kinds[] = {
      {".mesh"},
      {}},
     {"an Ogre mesh", is_ogre_mesh, {".mesh"}, {}},
-    {"COLLADA", [](std::string_view s) { return is_xml(s, "collada"); }, {".dae", ".xml"}, {}},
+    {"COLLADA", [](std::string_view s) { return is_xml(s, "collada"); }, {".dae"}, {}},
     {"X3D", [](std::string_view s) { return is_xml(s, "x3d"); }, {".x3d", ".xml"}, {}},
-    {"AMF", [](std::string_view s) { return is_xml(s, "amf"); }, {".amf", ".xml"}, {}},
-    {"VTK's XML format", [](std::string_view s) { return is_xml(s, "vtkfile"); }, {}, from_vtk},
+    {"AMF", [](std::string_view s) { return is_xml(s, "amf"); }, {".amf"}, {}},
+    {"VTK's XML format",
+     [](std::string_view s) { return is_xml(s, "vtkfile"); },
+     {".vtu", ".vtp"},
+     "give its name the extension of its type, .vtu or .vtp"},
     {"a FEBio model", [](std::string_view s) { return is_xml(s, "febio_spec"); }, {}, from_simulation},
-    {"XDMF", [](std::string_view s) { return is_xml(s, "xdmf"); }, {}, from_simulation},
-    {"an MFEM mesh", [](std::string_view s) { return s.starts_with("MFEM "); }, {}, from_simulation},
-    {"a mesh of Fluent",
-     [](std::string_view s) { return s.starts_with("(0 \"") || s.starts_with("(2 3)"); },
+    {"XDMF", [](std::string_view s) { return is_xml(s, "xdmf"); }, {}, from_meshio},
+    {"an MFEM mesh", [](std::string_view s) { return s.starts_with("MFEM "); }, {".mesh"}, {}},
+    {"a mesh of ANSYS Fluent",
+     [](std::string_view s) {
+       return s.starts_with("(0 \"") || s.starts_with("(1 \"") || s.starts_with("(2 3)") ||
+              s.starts_with("(2 2)");
+     },
      {},
-     from_simulation},
-    {"a Netgen mesh",
-     [](std::string_view s) { return starts_with_word(s, {"mesh3d"}); },
-     {},
-     from_simulation},
+     from_fluent},
+    {"a Netgen mesh", [](std::string_view s) { return starts_with_word(s, {"mesh3d"}); }, {}, from_meshio},
     {"VRML", [](std::string_view s) { return s.starts_with("#VRML"); }, {}, from_modellers},
     {"a Blender file", [](std::string_view s) { return s.starts_with("BLENDER"); }, {".blend"}, {}},
     {"STEP", is_cad_step, {}, from_cad},
@@ -254,7 +265,7 @@ constexpr Kind kinds[] = {
      "give a mesh file"},
     {"a zip archive",
      [](std::string_view s) { return s.starts_with("PK\x03\x04"); },
-     {".3mf", ".zae", ".ifczip", ".pk3"},
+     {".3mf", ".amf", ".zae", ".ifczip", ".pk3"},
      from_archives},
     {"a compressed file",
      [](std::string_view s) {
@@ -269,6 +280,11 @@ constexpr Kind kinds[] = {
 };
 
 const Kind* kind_of(std::string_view start) {
+  std::string narrow;
+  if (is_utf16(start)) {
+    std::ranges::copy_if(start.substr(2), std::back_inserter(narrow), [](char c) { return c != '\0'; });
+    start = narrow;
+  }
   const auto kind =
       std::ranges::find_if(kinds, [&](const Kind& candidate) { return candidate.matches(start); });
   return kind == std::end(kinds) ? nullptr : &*kind;
@@ -281,6 +297,19 @@ bool is_binary_stl(const std::filesystem::path& path, std::string_view start) {
   for (std::size_t i = 84; i-- > 80;) triangles = triangles << 8 | static_cast<unsigned char>(start[i]);
   std::error_code unknown;
   return std::filesystem::file_size(path, unknown) == 84 + 50 * triangles;
+}
+
+/// What a .geo file is, which programs of three kinds write.
+std::string advice_on_geo(std::string_view start) {
+  TextScanner scanner(is_utf16(start) ? std::string_view{} : start, "", {.hash_comments = true});
+  scanner.skip_to_word();
+  const std::string_view word = scanner.word();
+  if (word == "algebraic3d" || word == "algebraic2d" || word.starts_with("splinecurves"))
+    return "a geometry of Netgen is not supported; mesh it in Netgen, and export it in Gmsh's format, as "
+           ".msh";
+  if (word == "PGEOMETRY" || word.starts_with('[') || word.starts_with("\x7fNSJb"))
+    return "Houdini's geometry is not supported; " + std::string(from_animation);
+  return "a script of Gmsh is not a mesh; mesh it by: gmsh -3 FILE.geo -o out.msh, and give the .msh file";
 }
 
 }  // namespace
@@ -326,6 +355,10 @@ std::string advice_on_extension(std::string_view extension) {
 void fail_unsupported(const std::filesystem::path& path, std::string_view start) {
   const std::string extension = lower_case_extension(path);
   const std::string problem = "cannot read " + shown(path) + ": ";
+  // A pointer or a page may have any name.
+  const Kind* kind = kind_of(start);
+  if (kind == &kinds[0] || kind == &kinds[1]) check_kind(path, start);
+  if (extension == ".geo") fail(problem + advice_on_geo(start));
   if (const std::string advice = advice_on_extension(extension); !advice.empty()) fail(problem + advice);
   check_kind(path, start);
   fail(problem +

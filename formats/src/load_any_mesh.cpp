@@ -21,6 +21,14 @@ bool is_native(std::string_view extension) {
   return std::find(native_extensions.begin(), native_extensions.end(), extension) != native_extensions.end();
 }
 
+bool is_read_by_ufbx([[maybe_unused]] std::string_view extension) {
+#ifdef SUPPLE_UFBX
+  return extension == ".fbx";
+#else
+  return false;
+#endif
+}
+
 bool is_gltf(std::string_view extension) {
   return extension == ".gltf" || extension == ".glb";
 }
@@ -53,8 +61,8 @@ std::span<const std::string_view> supported_extensions() {
 bool is_read_by_assimp(const std::filesystem::path& path) {
   const std::string extension = lower_case_extension(path);
   const std::span<const std::string_view> known = supported_extensions();
-  return !is_native(extension) && !is_gltf(extension) && !has_own_reader(path) &&
-         std::binary_search(known.begin(), known.end(), extension);
+  return !is_native(extension) && !is_gltf(extension) && !is_read_by_ufbx(extension) &&
+         !has_own_reader(path) && std::binary_search(known.begin(), known.end(), extension);
 }
 
 AnimatedModel read_model(const std::filesystem::path& path) {
@@ -71,6 +79,10 @@ AnimatedModel read_model(const std::filesystem::path& path) {
     MeshFile file = read_own_format(path);
     model.mesh = std::move(file.mesh);
     model.frame = file.frame;
+#ifdef SUPPLE_UFBX
+  } else if (is_read_by_ufbx(extension)) {
+    model = read_fbx(path);
+#endif
   } else {
     model = read_with_assimp(path);
   }

@@ -12,8 +12,8 @@
 namespace supple {
 namespace {
 
-constexpr std::array<std::string_view, 8> extensions = {".3mf",   ".ele", ".face", ".mesh",
-                                                        ".meshb", ".msh", ".node", ".vtk"};
+constexpr std::array<std::string_view, 11> extensions = {".3mf", ".amf",  ".ele", ".face", ".mesh", ".meshb",
+                                                         ".msh", ".node", ".vtk", ".vtp",  ".vtu"};
 
 // The files of TetGen have one name and several extensions.
 TriangleMesh read_tetgen_files(const std::filesystem::path& given) {
@@ -55,6 +55,9 @@ MeshFile read_own_format(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   const std::string file = shown(path);
   if (extension == ".3mf") return read_3mf(bytes, file);
+  if (extension == ".amf") return read_amf(bytes, file);
+  if (extension == ".vtu" || extension == ".vtp") return {read_vtk_xml(bytes, file)};
+  if (extension == ".mesh" && bytes.starts_with("MFEM ")) return {read_mfem(bytes, file)};
   if (extension == ".msh") return {read_gmsh(bytes, file)};
   if (extension == ".vtk") return {read_vtk(bytes, file)};
   return {extension == ".mesh" ? read_medit(bytes, file) : read_medit_binary(bytes, file)};

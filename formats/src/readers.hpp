@@ -33,4 +33,14 @@ TriangleMesh read_tetgen(const TetgenFile& nodes, const TetgenFile& elements, co
 /// 3MF, with its unit; z is up.
 MeshFile read_3mf(std::string_view bytes, const std::string& file);
 
+/// AMF, as XML or as an archive of it, with its unit.
+MeshFile read_amf(std::string_view bytes, const std::string& file);
+
+/// VTK's .vtu and .vtp: unstructured grids and polygons in XML; text or binary, as they are or compressed by
+/// zlib.
+TriangleMesh read_vtk_xml(std::string_view bytes, const std::string& file);
+
+/// MFEM's meshes of version 1.
+TriangleMesh read_mfem(std::string_view bytes, const std::string& file);
+
 }  // namespace supple

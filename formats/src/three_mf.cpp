@@ -6,7 +6,6 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <pugixml.hpp>
 #include <utility>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "mesh/files/number_text.hpp"
 #include "mesh/files/quotes.hpp"
 #include "readers.hpp"
+#include "xml_nodes.hpp"
 #include "zip_reader.hpp"
 
 namespace supple {
@@ -38,31 +38,6 @@ struct Model {
   std::map<std::string, Object> objects;
   std::vector<Placement> items;
 };
-
-std::string_view without_prefix(std::string_view name) {
-  const std::size_t colon = name.find(':');
-  return colon == std::string_view::npos ? name : name.substr(colon + 1);
-}
-
-/// The name without the prefix of a namespace, which files choose themselves.
-std::string_view name_of(const pugi::xml_node& node) {
-  return without_prefix(node.name());
-}
-
-/// The attribute with this name after its prefix.
-std::string attribute(const pugi::xml_node& node, std::string_view name) {
-  for (const pugi::xml_attribute& candidate : node.attributes()) {
-    if (without_prefix(candidate.name()) == name) return candidate.value();
-  }
-  return {};
-}
-
-pugi::xml_node child(const pugi::xml_node& node, std::string_view name) {
-  for (const pugi::xml_node& candidate : node.children()) {
-    if (name_of(candidate) == name) return candidate;
-  }
-  return {};
-}
 
 std::string without_slash(std::string path) {
   if (path.starts_with('/')) path.erase(0, 1);

@@ -45,6 +45,14 @@ ZipReader::ZipReader(std::string_view bytes, const std::string& archive)
   }
 }
 
+std::string ZipReader::name_ending_with(const std::string& ending) const {
+  const auto found =
+      std::ranges::find_if(indices_, [&](const auto& entry) { return entry.first.ends_with(ending); });
+  if (found == indices_.end())
+    fail(archive_name_ + ": the zip archive has no file " + in_quotes("*" + ending));
+  return found->first;
+}
+
 std::string ZipReader::read(const std::string& name) {
   const auto fail_here = [&](const std::string& what) {
     fail(archive_name_ + ", part " + in_quotes(name) + ": " + what);

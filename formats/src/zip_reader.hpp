@@ -17,6 +17,8 @@ class ZipReader {
   ZipReader(std::string_view bytes, const std::string& archive);
 
   bool contains(const std::string& name) const { return indices_.contains(lower_case(name)); }
+  /// The first file, by name in lower case, whose name ends like this. Fails when there is none.
+  std::string name_ending_with(const std::string& ending) const;
   /// The content of the file; the case of its name does not matter. Fails when it does not exist or is
   /// damaged, and when the files read so far expand to more than 16 MiB and 200 times the size of the
   /// archive.

@@ -48,8 +48,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace supple;
   static const std::vector<std::string_view> extensions = [] {
     // Without .3mf and .mesh, so that a choice keeps its meaning for the inputs of the corpus.
-    constexpr std::array<std::string_view, 10> own = {".obj",  ".off",   ".ply", ".stl",  ".ele",
-                                                      ".face", ".meshb", ".msh", ".node", ".vtk"};
+    constexpr std::array<std::string_view, 12> own = {".obj",   ".off", ".ply",  ".stl", ".ele", ".face",
+                                                      ".meshb", ".msh", ".node", ".vtk", ".vtp", ".vtu"};
     std::vector<std::string_view> others(supported_extensions().begin(), supported_extensions().end());
     std::erase_if(others,
                   [&](std::string_view e) { return std::find(own.begin(), own.end(), e) != own.end(); });

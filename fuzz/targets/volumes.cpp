@@ -1,9 +1,10 @@
-// The library's own readers of meshes with solids and of 3MF. The first byte chooses the reader. A file of
-// TetGen is followed by the next after a zero byte: nodes, elements, faces.
+// The library's own readers of meshes with solids, of 3MF, AMF and COLLADA. The first byte chooses the
+// reader. A file of TetGen is followed by the next after a zero byte: nodes, elements, faces.
 
 #include <string>
 #include <string_view>
 
+#include "assimp/collada_text.hpp"
 #include "readers.hpp"
 #include "supple/error.hpp"
 #include "support/byte_reader.hpp"
@@ -24,6 +25,15 @@ supple::TriangleMesh read(std::size_t choice, std::string_view bytes) {
       return read_medit_binary(bytes, "input");
     case 4:
       return read_3mf(bytes, "input").mesh;
+    case 6:
+      return read_vtk_xml(bytes, "input");
+    case 7:
+      return read_mfem(bytes, "input");
+    case 8:
+      return read_amf(bytes, "input").mesh;
+    case 9:
+      collada_text(bytes, "input");
+      return {};
     default: {
       const auto next_file = [&] {
         const std::string_view file = bytes.substr(0, bytes.find('\0'));
@@ -41,7 +51,8 @@ supple::TriangleMesh read(std::size_t choice, std::string_view bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   supple::fuzz::ByteReader bytes(data, size);
-  const std::size_t choice = bytes.byte() % 6;
+  // The first six keep their meaning for the inputs of the corpus.
+  const std::size_t byte = bytes.byte(), choice = byte < 248 ? byte % 6 : 6 + byte % 4;
   supple::TriangleMesh mesh;
   try {
     mesh = read(choice, bytes.text());
@@ -50,8 +61,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   supple::check_mesh(mesh);
-  // The components of a 3MF file may repeat a mesh.
-  if (choice != 4) {
+  // The components of 3MF and AMF may repeat a mesh, and the arrays of VTK may be compressed.
+  if (choice != 4 && choice != 6 && choice != 8) {
     const std::size_t most = 64 + 8 * size;
     supple::fuzz::check(mesh.positions.capacity() <= most && mesh.triangles.capacity() <= most,
                         "a count of the file decides how much memory is used");

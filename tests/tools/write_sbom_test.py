@@ -7,7 +7,8 @@ import sys
 import unittest
 
 DOCUMENT = json.loads(pathlib.Path(sys.argv.pop()).read_text())
-LOCK = pathlib.Path(__file__).resolve().parents[2] / "viewer/page/package-lock.json"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LOCK = ROOT / "viewer/page/package-lock.json"
 
 
 class BillOfMaterials(unittest.TestCase):
@@ -30,6 +31,11 @@ class BillOfMaterials(unittest.TestCase):
         for name in ("three", "uplot", "fflate"):
             self.assertEqual(self.packages[name]["versionInfo"], locked[f"node_modules/{name}"]["version"])
         self.assertNotIn("vite", self.packages)
+
+    @unittest.skipUnless((ROOT / "build/ufbx/ufbx.h").exists(), "this build may be without ufbx")
+    def test_has_the_sources_that_are_compiled_into_it(self):
+        self.assertRegex(self.packages["ufbx"]["versionInfo"], r"^\d+\.\d+\.\d+$")
+        self.assertEqual(self.packages["ufbx"]["licenseDeclared"], "MIT OR Unlicense")
 
     @unittest.skipUnless(shutil.which("dpkg-query"), "versions are known on Debian only")
     def test_has_what_is_compiled_and_linked(self):

@@ -29,14 +29,6 @@ std::vector<Influence> tidy(std::vector<Influence> influences) {
   return result;
 }
 
-void add(PolygonCounts& sum, const PolygonCounts& more) {
-  sum.quads += more.quads;
-  sum.larger += more.larger;
-  sum.concave += more.concave;
-  sum.crossing += more.crossing;
-  sum.bent += more.bent;
-}
-
 /// Writes a vertex as numbers: its point, displacements and influences, filled up to `width` with zeros.
 class RowWriter {
  public:
@@ -90,6 +82,14 @@ class RowWriter {
 };
 
 }  // namespace
+
+void add(PolygonCounts& sum, const PolygonCounts& more) {
+  sum.quads += more.quads;
+  sum.larger += more.larger;
+  sum.concave += more.concave;
+  sum.crossing += more.crossing;
+  sum.bent += more.bent;
+}
 
 void AnimatedModel::add_part(ModelPart part, std::span<const Surface> surfaces, const std::string& file) {
   std::size_t targets = 0;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,6 +31,7 @@ enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
 struct AnimationTrack {
   std::uint32_t node = 0;
   Animated property = Animated::translation;
+  std::optional<std::uint32_t> weight{};  ///< of `weights`: the only one that the track animates
   Interpolation interpolation = Interpolation::linear;
   std::vector<double> times;  ///< ascending, at least one
   /// For each key `width()` numbers; for a cubic spline the tangent in, the value and the tangent out.
@@ -83,6 +85,9 @@ struct AnimatedModel {
   std::vector<ModelPart> parts;
   std::vector<AnimationClip> clips;
   std::vector<std::vector<AnimationTrack>> tracks;  ///< of each clip
+  /// Computes the positions at a time of a clip, where the library of a format does this. Then the mesh is
+  /// complete, and there are no nodes, skins, parts and tracks.
+  std::function<void(std::size_t clip, double time, std::span<Vec3d> positions)> evaluate;
 
   /// Adds the surfaces as one part. Equal vertices become one; vertices of no triangle are left out. `part`
   /// has everything but the vertices. `file` is the name in messages.
@@ -101,6 +106,9 @@ struct AnimatedModel {
 
   std::vector<std::uint32_t> order_;  ///< the nodes, parents before their children
 };
+
+/// Adds counts.
+void add(PolygonCounts& sum, const PolygonCounts& more);
 
 /// The value of a track at a time; as many numbers as its width.
 std::vector<double> value_at(const AnimationTrack& track, double time);

@@ -39,7 +39,10 @@ void AnimatedMesh::positions(std::size_t clip, double time, std::span<Vec3d> pos
     fail(content_->file + ": " + std::to_string(positions.size()) + " positions given for " +
          std::to_string(model.mesh.positions.size()) + " vertices");
   if (!std::isfinite(time)) fail(content_->file + ": the time of a pose must be finite");
-  model.pose(&model.tracks[clip], time, positions);
+  if (model.evaluate)
+    model.evaluate(clip, time, positions);
+  else
+    model.pose(&model.tracks[clip], time, positions);
 }
 
 }  // namespace supple

@@ -9,6 +9,11 @@ namespace supple {
 /// Reads a glTF 2.0 file, text or binary.
 AnimatedModel read_gltf(const std::filesystem::path& path);
 
+#ifdef SUPPLE_UFBX
+/// Reads an FBX file by ufbx.
+AnimatedModel read_fbx(const std::filesystem::path& path);
+#endif
+
 /// Reads a file of any format that Assimp reads, by its extension.
 AnimatedModel read_with_assimp(const std::filesystem::path& path);
 

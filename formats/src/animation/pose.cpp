@@ -1,21 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "animation/angles.hpp"
 #include "animation/animated_model.hpp"
 #include "supple/trigonometry.hpp"
 
 namespace supple {
 namespace {
-
-/// The angle in turns with this cosine and sine, from 0 to a quarter turn. `std::acos` has other bits on
-/// other machines.
-double angle_in_turns(double cosine, double sine) {
-  constexpr double turn = 6.283185307179586;
-  double turns = 2 * sine / (1 + cosine) / turn;
-  // Each step cubes the error, which is at most 0.43 at the start.
-  for (int step = 0; step < 4; ++step) turns += (sine * cos_turns(turns) - cosine * sin_turns(turns)) / turn;
-  return turns;
-}
 
 void interpolate_rotation(std::span<double> a, std::span<const double> b, double part) {
   double cosine = 0;
@@ -57,7 +48,9 @@ void put(ModelNode& node, const AnimationTrack& track, const std::vector<double>
     node.scale = vector();
   else if (track.property == Animated::rotation)
     node.rotation = {value[0], value[1], value[2], value[3]};
-  else
+  else if (track.weight && *track.weight < node.weights.size())
+    node.weights[*track.weight] = value[0];
+  else if (!track.weight)
     node.weights = value;
   if (track.property != Animated::weights) node.matrix.reset();
 }
@@ -82,6 +75,14 @@ Vec3d skinned(const std::vector<Transform>& joints, const std::vector<Influence>
 }
 
 }  // namespace
+
+double angle_in_turns(double cosine, double sine) {
+  constexpr double turn = 6.283185307179586;
+  double turns = 2 * sine / (1 + cosine) / turn;
+  // Each step cubes the error, which is at most 0.43 at the start.
+  for (int step = 0; step < 4; ++step) turns += (sine * cos_turns(turns) - cosine * sin_turns(turns)) / turn;
+  return turns;
+}
 
 std::vector<double> value_at(const AnimationTrack& track, double time) {
   const std::size_t width = track.width();

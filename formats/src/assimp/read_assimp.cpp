@@ -11,10 +11,12 @@
 #include "animation/model_readers.hpp"
 #include "assimp/assimp_clips.hpp"
 #include "assimp/assimp_frame.hpp"
+#include "assimp/collada_text.hpp"
 #include "core/error.hpp"
 #include "file_kinds.hpp"
 #include "mesh/files/file_access.hpp"
 #include "mesh/files/quotes.hpp"
+#include "mesh/files/text_scanner.hpp"
 #include "mesh/polygon/polygon.hpp"
 
 namespace supple {
@@ -185,7 +187,16 @@ AnimatedModel read_with_assimp(const std::filesystem::path& path) {
   // Mirroring again gives the coordinates of the file.
   const unsigned steps =
       is_mirrored_by_assimp(extension) ? aiProcess_MakeLeftHanded | aiProcess_FlipWindingOrder : 0u;
-  const aiScene* scene = importer.ReadFile(path.string(), steps);
+  const aiScene* scene = nullptr;
+  if (extension == ".dae" || extension == ".zae") {
+    const std::string text = collada_text(read_file(path), shown(path));
+    scene = importer.ReadFileFromMemory(text.data(), text.size(), steps, "dae");
+  } else if (is_utf16(read_start(path))) {
+    const std::string text = xml_in_utf8(read_file(path), shown(path));
+    scene = importer.ReadFileFromMemory(text.data(), text.size(), steps, extension.c_str() + 1);
+  } else {
+    scene = importer.ReadFile(path.string(), steps);
+  }
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string reason = one_line(importer.GetErrorString());
     // Assimp reads some files of these formats.

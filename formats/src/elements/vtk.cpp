@@ -8,6 +8,7 @@
 
 #include "elements/element_mesh.hpp"
 #include "elements/scalar_reader.hpp"
+#include "elements/vtk_cells.hpp"
 #include "mesh/files/quotes.hpp"
 #include "readers.hpp"
 
@@ -28,80 +29,6 @@ constexpr TypeName type_names[] = {
     {"vtkidtype", Scalar::int64},    {"float", Scalar::float32},
     {"double", Scalar::float64},
 };
-
-/// What a type of cells is. Its corners come before its other nodes.
-struct CellShape {
-  enum Kind { nothing, polygon, strip, pixel, solid, voxel } kind;
-  std::size_t corner_count = 0;  // of a polygon: 0 for all of its nodes
-  Solid solid_kind{};
-};
-
-std::optional<CellShape> shape_of_type(std::int64_t type) {
-  switch (type) {
-    case 0:
-    case 1:
-    case 2:
-    case 3:
-    case 4:  // empty, points and lines
-    case 21:
-    case 35:
-    case 68:
-    case 75:
-      return CellShape{CellShape::nothing};
-    case 6:
-      return CellShape{CellShape::strip, 3};
-    case 7:
-      return CellShape{CellShape::polygon};
-    case 8:
-      return CellShape{CellShape::pixel, 4};
-    case 5:
-    case 22:
-    case 34:
-    case 69:
-    case 76:
-      return CellShape{CellShape::polygon, 3};
-    case 9:
-    case 23:
-    case 28:
-    case 30:
-    case 70:
-    case 77:
-      return CellShape{CellShape::polygon, 4};
-    case 10:
-    case 24:
-    case 71:
-    case 78:
-      return CellShape{CellShape::solid, 4, Solid::tetrahedron};
-    case 11:
-      return CellShape{CellShape::voxel, 8, Solid::hexahedron};
-    case 12:
-    case 25:
-    case 29:
-    case 33:
-    case 72:
-    case 79:
-      return CellShape{CellShape::solid, 8, Solid::hexahedron};
-    case 13:
-    case 26:
-    case 31:
-    case 32:
-    case 73:
-    case 80:
-      return CellShape{CellShape::solid, 6, Solid::prism};
-    case 14:
-    case 27:
-    case 37:
-    case 74:
-    case 81:
-      return CellShape{CellShape::solid, 5, Solid::pyramid};
-    case 15:
-      return CellShape{CellShape::solid, 10, Solid::pentagonal_prism};
-    case 16:
-      return CellShape{CellShape::solid, 12, Solid::hexagonal_prism};
-    default:
-      return {};
-  }
-}
 
 /// Lists of vertices: list i is ids[ends[i - 1]] to ids[ends[i] - 1].
 struct Lists {
@@ -131,9 +58,9 @@ class VtkReader {
       } else if (keyword == "cell_types") {
         read_cells();
       } else if (keyword == "polygons") {
-        add(read_lists(), {CellShape::polygon});
+        add(read_lists(), {VtkCellShape::polygon});
       } else if (keyword == "triangle_strips") {
-        add(read_lists(), {CellShape::strip, 3});
+        add(read_lists(), {VtkCellShape::strip, 3});
       } else if (keyword == "vertices" || keyword == "lines") {
         read_lists();
       } else if (keyword == "metadata") {
@@ -276,46 +203,25 @@ class VtkReader {
     begin_numbers();
     for (std::size_t i = 0; i < count; ++i) {
       const std::int64_t type = reader_.integer(Scalar::int32, "the type of a cell");
-      const std::optional<CellShape> shape = shape_of_type(type);
+      const std::optional<VtkCellShape> shape = vtk_shape_of(type);
       if (!shape) {
-        reader_.fail_here(
-            "cell " + std::to_string(i) + " is of type " + std::to_string(type) +
-            ", which is not supported; save the mesh with simple cells such as tetrahedra (type 10) "
-            "or hexahedra (type 12)");
+        reader_.fail_here("cell " + std::to_string(i) + unsupported_vtk_cell(type));
       }
       add_cell(cells_[i], *shape, i);
     }
     cells_ = {};
   }
 
-  void add(const Lists& lists, const CellShape& shape) {
+  void add(const Lists& lists, const VtkCellShape& shape) {
     for (std::size_t i = 0; i < lists.ends.size(); ++i) add_cell(lists[i], shape, i);
   }
 
-  void add_cell(std::span<const std::uint32_t> ids, const CellShape& shape, std::size_t number) {
+  void add_cell(std::span<const std::uint32_t> ids, const VtkCellShape& shape, std::size_t number) {
     if (ids.size() < shape.corner_count) {
       reader_.fail_here("cell " + std::to_string(number) + " has " + std::to_string(ids.size()) +
                         " points; its type needs " + std::to_string(shape.corner_count));
     }
-    switch (shape.kind) {
-      case CellShape::nothing:
-        return;
-      case CellShape::polygon:
-        return mesh_.add_polygon(shape.corner_count == 0 ? ids : ids.first(shape.corner_count));
-      case CellShape::strip:
-        for (std::size_t i = 2; i < ids.size(); ++i) {
-          const std::size_t odd = i % 2;  // every second triangle of a strip goes the other way
-          mesh_.add_polygon(std::array{ids[i - 2 + odd], ids[i - 1 - odd], ids[i]});
-        }
-        return;
-      case CellShape::pixel:
-        return mesh_.add_polygon(std::array{ids[0], ids[1], ids[3], ids[2]});
-      case CellShape::solid:
-        return mesh_.add_solid(shape.solid_kind, ids);
-      case CellShape::voxel:
-        return mesh_.add_solid(shape.solid_kind,
-                               std::array{ids[0], ids[1], ids[3], ids[2], ids[4], ids[5], ids[7], ids[6]});
-    }
+    add_vtk_cell(mesh_, ids, shape);
   }
 
   // Ends with an empty line.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base64.hpp"
 #include "core/error.hpp"
 #include "mesh/files/byte_order.hpp"
 #include "mesh/files/file_access.hpp"
@@ -21,21 +22,14 @@ constexpr std::string_view magic = "glTF";
 /// Extensions that a file may require: those that this reader applies, and those that change no shape.
 bool is_known(std::string_view extension) {
   constexpr std::array applied = {"KHR_mesh_quantization", "KHR_draco_mesh_compression",
-                                  "EXT_meshopt_compression", "EXT_mesh_gpu_instancing"};
+                                  "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
+                                  "KHR_animation_pointer"};
   constexpr std::array without_shape = {"KHR_materials_", "KHR_technique", "KHR_texture_",
                                         "EXT_texture_",   "MSFT_texture_", "MSFT_packing_",
                                         "KHR_lights_",    "KHR_xmp",       "EXT_lights_"};
   return std::find(applied.begin(), applied.end(), extension) != applied.end() ||
          std::any_of(without_shape.begin(), without_shape.end(),
                      [&](std::string_view start) { return extension.starts_with(start); });
-}
-
-/// The value of a digit, or -1.
-int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
 /// Nothing when the text has another character.
@@ -107,7 +101,8 @@ GltfFile::GltfFile(const std::filesystem::path& path) : path_(path), name_(shown
     };
     if (content.size() < 12) fail(name_ + ": the file ends within its header");
     if (number(4) != 2)
-      fail(name_ + ": has version " + std::to_string(number(4)) + " of glTF; export it as glTF 2.0");
+      fail(name_ + ": has version " + in_quotes(std::to_string(number(4)) + ".0") +
+           " of glTF; export it as glTF 2.0");
     for (std::size_t place = 12; place + 8 <= content.size();) {
       const std::uint64_t length = number(place);
       const std::string_view kind(content.data() + place + 4, 4);
@@ -117,15 +112,17 @@ GltfFile::GltfFile(const std::filesystem::path& path) : path_(path), name_(shown
       const std::string_view chunk(content.data() + place + 8, length);
       if (kind == "JSON" && json.empty()) json = chunk;
       if (kind == std::string_view("BIN\0", 4) && binary_.empty()) binary_ = chunk;
-      place += 8 + (length + 3) / 4 * 4;
+      // A chunk is filled up to a multiple of four bytes, which some programs forget.
+      const std::size_t end = place + 8 + length, padded = end + (4 - length % 4) % 4;
+      const auto begins_binary = [&](std::size_t at) {
+        return at + 8 <= content.size() &&
+               std::string_view(content).substr(at + 4, 4) == std::string_view("BIN\0", 4);
+      };
+      place = begins_binary(end) && !begins_binary(padded) ? end : padded;
     }
   }
   document_ = parse_json(json, name_);
-  const std::string version = root()["asset"]["version"].text_or("");
-  if (!version.starts_with("2."))
-    fail(name_ + ": has " +
-         (version.empty() ? "no asset.version" : "version " + in_quotes(version) + " of glTF") +
-         "; export it as glTF 2.0");
+  check_version();
   check_extensions();
   buffers_.resize(root()["buffers"].size());
   views_.resize(root()["bufferViews"].size());
@@ -134,6 +131,26 @@ GltfFile::GltfFile(const std::filesystem::path& path) : path_(path), name_(shown
     const GltfValue value = root()["buffers"].at(i);
     if (value["uri"] || (i == 0 && !binary_.empty())) bytes_ += buffer(i).size();
   }
+}
+
+void GltfFile::check_version() const {
+  // Version 1.0 has objects instead of arrays, and its number may be a number.
+  const auto is_object = [&](const char* key) {
+    const auto found = document_->is_object() ? document_->find(key) : document_->end();
+    return found != document_->end() && found->is_object();
+  };
+  std::string version;
+  if (is_object("asset")) {
+    const auto given = (*document_)["asset"].find("version");
+    if (given != (*document_)["asset"].end())
+      version = given->is_string() ? given->get<std::string>() : given->dump();
+  }
+  if (version.empty() && (is_object("meshes") || is_object("accessors") || is_object("nodes")))
+    version = "1.0";
+  if (!version.starts_with("2."))
+    fail(name_ + ": has " +
+         (version.empty() ? "no asset.version" : "version " + in_quotes(version) + " of glTF") +
+         "; export it as glTF 2.0");
 }
 
 void GltfFile::check_extensions() const {

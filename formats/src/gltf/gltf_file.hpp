@@ -65,6 +65,7 @@ class GltfFile {
   std::uint64_t bytes() const { return bytes_; }
 
  private:
+  void check_version() const;
   void check_extensions() const;
   std::string_view buffer(std::uint64_t index);
   std::string read_uri(const GltfValue& uri) const;

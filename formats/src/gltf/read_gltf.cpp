@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "gltf/gltf_draco.hpp"
 #include "gltf/gltf_file.hpp"
+#include "mesh/files/number_text.hpp"
 
 namespace supple {
 namespace {
@@ -26,9 +28,16 @@ std::vector<Vec3d> vectors(const GltfNumbers& numbers) {
   return result;
 }
 
-/// The transform of 16 numbers, column by column.
-Transform transform_of(const double* values) {
+/// The transform of 16 numbers, column by column. `place` is where they are.
+Transform transform_of(const double* values, const GltfValue& place) {
   Transform result;
+  // Some exporters round the last row.
+  constexpr double rounding = 1e-5;
+  for (std::size_t column = 0; column < 4; ++column) {
+    if (!(std::abs(values[4 * column + 3] - (column == 3 ? 1 : 0)) <= rounding))
+      place.fail_here(
+          "the last row of a matrix is not 0 0 0 1, as glTF demands; projections are not supported");
+  }
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 4; ++column) result[row][column] = values[4 * column + row];
   }
@@ -176,7 +185,7 @@ class GltfReader {
     for (std::uint32_t i = 0; i < model_.nodes.size(); ++i) {
       const GltfValue value = nodes.at(i);
       ModelNode& node = model_.nodes[i];
-      if (value["matrix"]) node.matrix = transform_of(value["matrix"].numbers(16).data());
+      if (value["matrix"]) node.matrix = transform_of(value["matrix"].numbers(16).data(), value["matrix"]);
       node.translation = vector_of(value["translation"], node.translation);
       node.scale = vector_of(value["scale"], node.scale);
       if (const GltfValue rotation = value["rotation"]) {
@@ -207,7 +216,7 @@ class GltfReader {
       if (numbers.count < skin.joints.size())
         matrices.fail_here("has fewer matrices than the skin has joints");
       for (std::size_t k = 0; k < skin.joints.size(); ++k)
-        skin.inverse_bind[k] = transform_of(numbers.values.data() + 16 * k);
+        skin.inverse_bind[k] = transform_of(numbers.values.data() + 16 * k, matrices);
     }
   }
 
@@ -306,18 +315,18 @@ class GltfReader {
     const GltfValue channels = animation["channels"];
     std::vector<AnimationTrack> tracks;
     for (std::uint64_t i = 0; i < channels.size(); ++i) {
-      const GltfValue target = channels.at(i)["target"];
-      const std::string path = target["path"].text_or("");
-      constexpr std::array properties = {"translation", "rotation", "scale", "weights"};
-      const auto property = std::find(properties.begin(), properties.end(), path);
-      // Extensions animate other things, which do not change the shape.
-      if (!target["node"] || property == properties.end()) continue;
-      AnimationTrack track;
-      track.node = target["node"].index(model_.nodes.size(), "node");
-      track.property = static_cast<Animated>(property - properties.begin());
+      std::vector<AnimationTrack> targets = targets_of(channels.at(i)["target"]);
+      if (targets.empty()) continue;
       const GltfValue samplers = animation["samplers"];
-      read_keys(samplers.at(channels.at(i)["sampler"].index(samplers.size(), "sampler")), track);
-      if (!track.times.empty()) tracks.push_back(std::move(track));
+      read_keys(samplers.at(channels.at(i)["sampler"].index(samplers.size(), "sampler")), targets[0]);
+      if (targets[0].times.empty()) continue;
+      for (AnimationTrack& track : targets) {
+        const std::uint32_t node = track.node;
+        track = targets[0];
+        track.node = node;
+        if (track.weight) add_weights(node);
+      }
+      tracks.insert(tracks.end(), targets.begin(), targets.end());
     }
     if (tracks.empty()) return;
     AnimationClip clip{animation["name"].text_or("clip " + std::to_string(number)), tracks[0].times.front(),
@@ -328,6 +337,65 @@ class GltfReader {
     }
     model_.clips.push_back(std::move(clip));
     model_.tracks.push_back(std::move(tracks));
+  }
+
+  /// Tracks without keys for what a channel animates. None for other things than the shape, such as colours.
+  std::vector<AnimationTrack> targets_of(const GltfValue& target) const {
+    std::string path = target["path"].text_or("");
+    std::vector<std::uint32_t> nodes;
+    std::optional<std::uint32_t> weight;
+    if (path == "pointer") {
+      // "/nodes/3/translation", "/nodes/3/weights/0" or "/meshes/1/weights"
+      const GltfValue pointer = target["extensions"]["KHR_animation_pointer"]["pointer"];
+      std::vector<std::string> parts;
+      std::string part;
+      for (std::istringstream text(pointer.text_or("")); std::getline(text, part, '/');)
+        parts.push_back(part);
+      if (parts.size() < 4 || parts.size() > 5 || !parts[0].empty()) return {};
+      const std::optional<std::uint32_t> id = index_of(parts[2]);
+      if (parts.size() == 5) weight = index_of(parts[4]);
+      path = parts[3];
+      if (!id || (parts.size() == 5 && (path != "weights" || !weight))) return {};
+      if (parts[1] == "nodes") {
+        if (*id >= model_.nodes.size()) pointer.fail_here("there is no node " + parts[2]);
+        nodes = {*id};
+      } else if (parts[1] == "meshes" && path == "weights") {
+        for (std::uint32_t i = 0; i < model_.nodes.size(); ++i) {
+          const GltfValue node = root_["nodes"].at(i);
+          if (node["mesh"] && node["mesh"].whole() == *id && !node["weights"]) nodes.push_back(i);
+        }
+      }
+    } else if (target["node"]) {
+      nodes = {target["node"].index(model_.nodes.size(), "node")};
+    }
+    constexpr std::array properties = {"translation", "rotation", "scale", "weights"};
+    const auto property = std::find(properties.begin(), properties.end(), path);
+    std::vector<AnimationTrack> tracks;
+    for (const std::uint32_t node : nodes) {
+      if (property == properties.end()) break;
+      AnimationTrack& track = tracks.emplace_back();
+      track.node = node;
+      track.property = static_cast<Animated>(property - properties.begin());
+      track.weight = weight;
+    }
+    return tracks;
+  }
+
+  static std::optional<std::uint32_t> index_of(const std::string& text) {
+    std::int64_t value = 0;
+    const char* end = text.data() + text.size();
+    if (parse_integer(text.data(), end, value) != end || value < 0 || value > 0xffffffff) return {};
+    return static_cast<std::uint32_t>(value);
+  }
+
+  /// A track of one weight changes only this one, so the node needs all of them.
+  void add_weights(std::uint32_t node) {
+    std::vector<double>& weights = model_.nodes[node].weights;
+    for (const ModelPart& part : model_.parts) {
+      if (part.node != node) continue;
+      if (weights.empty()) weights = part.weights;
+      weights.resize(std::max(weights.size(), part.targets.size()));
+    }
   }
 
   void read_keys(const GltfValue& sampler, AnimationTrack& track) {

@@ -262,5 +262,46 @@ TEST(PointCache, BothFormats) {
   EXPECT_NE(error_of([&] { PointCache(folder.write("c.pc2", mdd)); }).find("POINTCACHE2"), std::string::npos);
 }
 
+/// As `add_channel`, by KHR_animation_pointer.
+void add_pointer(GltfBuilder& gltf, const char* pointer, const std::vector<float>& times,
+                 const std::string& type, const std::vector<float>& values) {
+  add_channel(gltf, 0, 0, "pointer", "LINEAR", times, type, values);
+  auto& target = gltf.json["animations"][0]["channels"].back()["target"];
+  target.erase("node");
+  target["extensions"]["KHR_animation_pointer"]["pointer"] = pointer;
+}
+
+TEST(Animation, PointersToNodes) {
+  GltfBuilder gltf = triangle_file();
+  gltf.json["extensionsRequired"] = {"KHR_animation_pointer"};
+  add_pointer(gltf, "/nodes/0/translation", {0, 1}, "VEC3", {0, 0, 0, 4, 0, 0});
+  add_pointer(gltf, "/nodes/0/scale", {0, 1}, "VEC3", {1, 1, 1, 3, 1, 1});
+  add_pointer(gltf, "/materials/0/pbrMetallicRoughness/baseColorFactor", {0, 9}, "VEC4",
+              {0, 0, 0, 0, 1, 1, 1, 1});
+  const AnimatedMesh mesh = load(gltf);
+  ASSERT_EQ(mesh.clips().size(), 1u);
+  EXPECT_EQ(mesh.clips()[0].end, 1);
+  expect_near({pose(mesh, 0.5)[1]}, {Vec3d{2 + 2 * triangle[3], triangle[4], triangle[5]}});
+}
+
+TEST(Animation, PointersToWeights) {
+  for (const char* pointer :
+       {"/nodes/0/weights", "/meshes/0/weights", "/nodes/0/weights/1", "/meshes/0/weights/1"}) {
+    GltfBuilder gltf = triangle_file();
+    gltf.json["meshes"][0]["primitives"][0]["targets"] = {
+        {{"POSITION", gltf.add<float>("VEC3", {0, 0, 5, 0, 0, 5, 0, 0, 5})}},
+        {{"POSITION", gltf.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1})}}};
+    gltf.json["meshes"][0]["weights"] = {1, 0};
+    const bool is_one = std::string(pointer).ends_with("/1");
+    add_pointer(gltf, pointer, {0, 1}, "SCALAR",
+                is_one ? std::vector<float>{0, 2} : std::vector<float>{1, 0, 1, 2});
+    const AnimatedMesh mesh = load(gltf);
+    ASSERT_EQ(mesh.clips().size(), 1u) << pointer;
+    EXPECT_EQ(mesh.mesh().positions[0].z, triangle[2] + 5) << pointer;
+    EXPECT_EQ(pose(mesh, 0.5)[0].z, triangle[2] + 6) << pointer;
+    EXPECT_EQ(pose(mesh, 1)[0].z, triangle[2] + 7) << pointer;
+  }
+}
+
 }  // namespace
 }  // namespace supple

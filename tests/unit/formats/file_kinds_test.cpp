@@ -12,9 +12,18 @@ TEST(FileKinds, ExtensionsWithoutAReader) {
   EXPECT_EQ(error_of([] { load_any_mesh("a.abc"); }),
             "cannot read a.abc: Alembic is not supported; export it as glTF (.glb) or FBX, or each frame as "
             "OBJ or PLY");
-  EXPECT_EQ(error_of([] { load_any_mesh("a.VTU"); }),
-            "cannot read a.VTU: VTK's XML format is not supported; save it as legacy .vtk (in ParaView: Save "
-            "Data, Legacy VTK Files)");
+  EXPECT_EQ(
+      error_of([] { load_any_mesh("a.PVTU"); }),
+      "cannot read a.PVTU: a list of VTK's files is not supported; save its data as .vtu or .vtp, or as "
+      "legacy .vtk (in ParaView: Save Data)");
+  // meshio reads one of these, and writes another format than Gmsh's to .msh.
+  EXPECT_EQ(
+      error_of([] { load_any_mesh("a.inp"); }),
+      "cannot read a.inp: an Abaqus model is not supported; convert it to VTK's format, for example by: "
+      "meshio convert FILE out.vtu");
+  EXPECT_EQ(error_of([] { load_any_mesh("a.feb"); }),
+            "cannot read a.feb: a FEBio model is not supported; export it as VTK (.vtu or .vtk) or as Gmsh's "
+            ".msh from the program that made it");
   for (const char* name : {"a.usdz", "a.iges", "a.max", "a.ma", "a.mb", "a.c4d", "a.skp", "a.dwg", "a.inp",
                            "a.vdb", "a.pcd", "a.obj.gz"}) {
     const std::string message = error_of([&] { load_any_mesh(name); });
@@ -52,10 +61,28 @@ TEST(FileKinds, TheContentTellsAnotherFormat) {
        ": its content is a compressed file, which the extension '.obj' does not say; unpack it, and give the "
        "mesh file inside"},
       {"d.msh", "(0 \"Fluent\")\n(2 3)\n",
-       ": its content is a mesh of Fluent, which is not supported; convert it"},
-      {"d.mesh", "MFEM mesh v1.0\n", ": its content is an MFEM mesh, which is not supported; convert it"},
+       ": its content is a mesh of ANSYS Fluent, which is not supported; convert it by: meshio convert FILE "
+       "out.vtu; for Gmsh's .msh, add --output-format gmsh"},
+      {"e.msh", "(1 \"meshio 5.3.5\")\n(2 3)\n",
+       ": its content is a mesh of ANSYS Fluent, which is not supported; convert it by"},
+      {"d.data", "MFEM mesh v1.0\n",
+       ": its content is an MFEM mesh, which the extension '.data' does not say; rename it to end in .mesh"},
       {"d.vtk", "<?xml version=\"1.0\"?>\n<!-- x -->\n<VTKFile type=\"PolyData\">",
-       ": its content is VTK's XML format, which is not supported; save it"},
+       ": its content is VTK's XML format, which the extension '.vtk' does not say; give its name"},
+      {"b.abc", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n",
+       ": its content is a pointer of Git LFS, which is not supported; fetch"},
+      {"b.geo", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n",
+       ": its content is a pointer of Git LFS, which is not supported; fetch"},
+      {"c.geo", "// Gmsh\nPoint(1) = {0, 0, 0, 1};\n",
+       ": a script of Gmsh is not a mesh; mesh it by: gmsh -3 FILE.geo"},
+      {"d.geo", "# a cube\nalgebraic3d\nsolid a = sphere (0, 0, 0; 1);\n",
+       ": a geometry of Netgen is not supported; mesh it in Netgen"},
+      {"e.geo", "PGEOMETRY V5\n", ": Houdini's geometry is not supported; export it as glTF"},
+      {"f.geo", "[\n\"fileversion\",\"18.0\",\n", ": Houdini's geometry is not supported; export it as glTF"},
+      {"e.ply", "NCOFF\n3 1 0\n",
+       ": its content is OFF, which the extension '.ply' does not say; rename it to end in .off"},
+      {"f.obj", std::string("\xFF\xFE<\0?\0x\0m\0l\0?\0>\0<\0a\0m\0f\0>\0", 26),
+       ": its content is AMF, which the extension '.obj' does not say; rename it to end in .amf"},
       {"a.step", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA (('AUTOMOTIVE_DESIGN'));\n",
        ": its content is STEP, which is not supported; export its tessellated surface as"},
       {"d.xyz1", "PXR-USDC", ": its content is USD, which is not supported; export it"},

@@ -288,5 +288,61 @@ TEST(Gltf, DamagedFiles) {
   EXPECT_GT(errors, 500u);
 }
 
+/// A binary file of chunks that are not filled up to a multiple of four bytes.
+std::string unpadded_glb(const std::string& json, const std::string& bytes) {
+  const auto number = [](std::size_t value) {
+    std::string text;
+    append_scalar(text, static_cast<std::uint32_t>(value));
+    return text;
+  };
+  return "glTF" + number(2) + number(28 + json.size() + bytes.size()) + number(json.size()) + "JSON" + json +
+         number(bytes.size()) + std::string("BIN\0", 4) + bytes;
+}
+
+TEST(Gltf, BinaryFilesWithoutPadding) {
+  const TemporaryFolder folder;
+  std::string points;
+  for (const int value : {0, 0, 0, 1, 0, 0, 0, 1, 0}) append_scalar(points, static_cast<float>(value));
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[
+{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]})";
+  for (int more = 0; more < 4; ++more, json += ' ')
+    EXPECT_EQ(load_any_mesh(folder.write("a.glb", unpadded_glb(json, points))).triangles.size(), 1u);
+}
+
+TEST(Gltf, Version1IsNamed) {
+  const TemporaryFolder folder;
+  for (const char* text :
+       {R"({"asset":{"version":"1.0"}})", R"({"asset":{"version":1.0},"meshes":{}})",
+        R"({"meshes":{"m":{"primitives":[]}},"nodes":{}})", R"({"asset":{},"nodes":{}})"}) {
+    const std::string path = folder.write("a.gltf", text);
+    EXPECT_EQ(error_of([&] { load_any_mesh(path); }),
+              path + ": has version '1.0' of glTF; export it as glTF 2.0");
+  }
+  const std::string binary = folder.write("a.glb", std::string("glTF\1\0\0\0\14\0\0\0", 12));
+  EXPECT_EQ(error_of([&] { load_any_mesh(binary); }),
+            binary + ": has version '1.0' of glTF; export it as glTF 2.0");
+}
+
+TEST(Gltf, ProjectionsAreNoTransforms) {
+  const TemporaryFolder folder;
+  const auto message_for = [&](int place, double value) {
+    GltfBuilder gltf;
+    gltf.json["nodes"] = {{{"mesh", 0}}};
+    gltf.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", gltf.add("VEC3", triangle)}}}}}}}};
+    std::vector<double> matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};
+    matrix[static_cast<std::size_t>(place)] = value;
+    gltf.json["nodes"][0]["matrix"] = matrix;
+    const std::string path = folder.write("a.gltf", gltf.text());
+    return error_of([&] { load_any_mesh(path); });
+  };
+  for (const auto& [place, value] :
+       {std::pair(3, 0.5), std::pair(7, -1.0), std::pair(11, 1.0), std::pair(15, 2.0)})
+    EXPECT_NE(message_for(place, value).find("nodes[0].matrix: the last row of a matrix is not 0 0 0 1"),
+              std::string::npos);
+  EXPECT_EQ(message_for(15, 1 + 1e-7), "");
+}
+
 }  // namespace
 }  // namespace supple

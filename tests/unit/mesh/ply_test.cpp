@@ -299,7 +299,6 @@ const ErrorCase ply_errors[] = {
      "a.ply, byte 230: the file ends before the last element of the header"},
     {binary(little().add(std::uint8_t{3}).add(0).add(1)),
      "a.ply, byte 226: the file ends before the last element of the header"},
-    {plain + corners + "0\n", "a.ply:14: face 0 has 0 corners; it needs at least 1"},
     {header("binary_little_endian", "element other 1\nproperty list char uchar l\n") + "\xff",
      "a.ply, byte 90: list 'l' has the length -1"},
     {header("binary_little_endian", "element other 1\nproperty list uint double l\n") + "\xff\xff\xff\xff",
@@ -316,6 +315,15 @@ TEST(Ply, CountsOfEmptyElementsAreNotCountedUpTo) {
   const TriangleMesh mesh = read_ply(
       header("ascii", "element nothing 9223372036854775807\nelement vertex 4\n" + xyz) + corners, "a.ply");
   EXPECT_EQ(mesh.positions.size(), 4u);
+}
+
+TEST(Ply, FacesWithoutCornersAreNone) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 3\nproperty list uchar int vertex_indices\nend_header\n";
+  const TriangleMesh mesh = read_ply(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n0\n3 2 1 0\n", "a.ply");
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 0}}));
+  EXPECT_TRUE(mesh.points.empty());
 }
 
 }  // namespace

@@ -297,5 +297,93 @@ TEST(PolygonCutter, LargePolygonsTakeNearlyLinearTime) {
   }
 }
 
+/// Cuts a large polygon that does not cross itself, and checks the area, and that nothing turns the other
+/// way.
+void expect_large_cover(const Polygon& polygon, const std::string& what) {
+  const Cut result = cut(in_space(polygon));
+  EXPECT_FALSE(result.shape.crosses) << what;
+  const std::int64_t whole = polygons::doubled_area(polygon);
+  std::int64_t area = 0, turned = 0;
+  for (const Triangle& t : result.triangles) {
+    const std::int64_t part = polygons::doubled_area(polygon[t[0]], polygon[t[1]], polygon[t[2]]);
+    turned += (part < 0) != (whole < 0) && part != 0;
+    area += part;
+  }
+  EXPECT_EQ(turned, 0) << what;
+  EXPECT_EQ(area, whole) << what;
+}
+
+/// Shapes of `count` parts that come back to places and edges again and again.
+std::vector<std::pair<std::string, Polygon>> pinched_polygons(std::int64_t count) {
+  Polygon petals, beads, holes, slit, teeth, stairs;
+  const std::int64_t radius = 16 * count;
+  for (std::int64_t i = 0; i < count; ++i) {  // all petals meet in one corner
+    petals.push_back({0, 0});
+    petals.push_back({radius, 4 * i});
+    petals.push_back({radius, 4 * i + 3});
+  }
+  for (std::int64_t i = 0; i < count; ++i) {  // each bead touches the next one in a corner
+    beads.push_back({4 * i, 0});
+    beads.push_back({4 * i + 2, -1});
+  }
+  for (std::int64_t i = count; i > 0; --i) {
+    beads.push_back({4 * i, 0});
+    beads.push_back({4 * i - 2, 1});
+  }
+  holes = {{0, 0}};  // a bridge leads from the lower side to each hole
+  for (std::int64_t i = 0; i < count; ++i) {
+    for (const Point& p : Polygon{{2, 0}, {2, 2}, {1, 4}, {3, 4}, {2, 2}, {2, 0}})
+      holes.push_back({4 * i + p[0], p[1]});
+  }
+  for (const Point& p : Polygon{{4 * count, 0}, {4 * count, 6}, {0, 6}}) holes.push_back(p);
+  slit = {{0, -3}, {4 * count + 4, -3}, {4 * count + 4, 3}, {0, 3}, {0, 0}};  // a path to a hole, and back
+  for (std::int64_t i = 1; i <= count; ++i) slit.push_back({2 * i, i % 2});
+  slit.push_back({2 * count + 1, 2});
+  slit.push_back({2 * count + 1, -1});
+  for (std::int64_t i = count; i > 0; --i) slit.push_back({2 * i, i % 2});
+  slit.push_back({0, 0});
+  teeth = {{0, 0}, {4 * count, 0}, {4 * count, 9}};  // teeth stand on the inside of one long edge
+  for (std::int64_t i = count; i-- > 0;) {
+    teeth.push_back({4 * i + 3, 5});
+    teeth.push_back({4 * i + 2, 0});
+    teeth.push_back({4 * i + 1, 5});
+  }
+  teeth.push_back({0, 9});
+  for (std::int64_t i = 0; i < count; ++i) {  // corners of each chain touch the edges of the other
+    stairs.push_back({4 * i, 4 * (i % 2)});
+    stairs.push_back({4 * i + 2, 2});
+  }
+  stairs.push_back({4 * count, 0});
+  stairs.push_back({4 * count, 9});
+  for (std::int64_t i = count; i-- > 0;) {
+    stairs.push_back({4 * i + 2, 2});
+    stairs.push_back({4 * i + 1, 9});
+  }
+  return {{"petals", petals}, {"beads", beads}, {"holes", holes},
+          {"slit", slit},     {"teeth", teeth}, {"stairs", stairs}};
+}
+
+TEST(PolygonCutter, PinchedPolygons) {
+  for (const std::int64_t count : {1, 2, 3, 5, 8}) {
+    for (const auto& [name, polygon] : pinched_polygons(count))
+      expect_cover(polygon, name + " " + std::to_string(count));
+  }
+}
+
+TEST(PolygonCutter, LargePinchedPolygonsTakeNearlyLinearTime) {
+  for (const auto& [name, polygon] : pinched_polygons(20000)) expect_large_cover(polygon, name);
+}
+
+TEST(PolygonCutter, CrossingsWhereTheLastCornerRepeatsTheFirst) {
+  Polygon shape{{1, 0}, {0, 1}, {2, 0}, {0, -1}, {-2, -2}, {0, 2}, {1, 0}};
+  for (int repeated = 0; repeated < 3; ++repeated) {
+    EXPECT_TRUE(cut(in_space(shape)).shape.crosses);
+    shape.insert(shape.begin(), shape.front());
+  }
+  Polygon convex{{0, 0}, {0, 0}, {4, 1}, {5, 5}, {-1, 4}, {0, 0}, {0, 0}};
+  EXPECT_FALSE(cut(in_space(convex)).shape.crosses);
+  EXPECT_EQ(fault_of_cover(convex, cut(in_space(convex)).triangles), "");
+}
+
 }  // namespace
 }  // namespace supple

@@ -182,5 +182,20 @@ TEST(Stl, SaysWhatIsWrongAndWhere) {
   }
 }
 
+// Some programs never fill in the number of facets.
+TEST(Stl, ANumberOfZeroWithFacetsAfterIt) {
+  std::string bytes(84, ' ');
+  for (std::size_t i = 80; i < 84; ++i) bytes[i] = '\0';
+  EXPECT_EQ(read_stl(bytes, "a.stl").triangles.size(), 0u);
+  for (int facet = 0; facet < 3; ++facet) {
+    for (const int value : {0, 0, 1, facet, 0, 0, 1, 0, 0, 0, 1, 0})
+      append_scalar(bytes, static_cast<float>(value));
+    append_scalar(bytes, std::uint16_t{0});
+  }
+  const TriangleMesh mesh = read_stl(bytes, "a.stl");
+  EXPECT_EQ(mesh.triangles.size(), 3u);
+  EXPECT_EQ(mesh.positions.size(), 4u);
+}
+
 }  // namespace
 }  // namespace supple

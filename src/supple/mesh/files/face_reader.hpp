@@ -25,15 +25,16 @@ std::uint32_t checked_vertex(std::int64_t index, std::uint64_t vertices, const c
 class FaceReader {
  public:
   /// Reads the face with the given number in its file, and adds it to the mesh. `next_index()` reads a
-  /// corner. Fails through `source.fail_here` when there is no corner, when an index is not below `vertices`,
-  /// and when both corners of a face of two are the same.
+  /// corner. A face without corners is none. Fails through `source.fail_here` when an index is not below
+  /// `vertices`, and when both corners of a face of two are the same.
   template <class Source, class NextIndex>
   void read(TriangleMesh& mesh, std::uint64_t vertices, std::uint64_t number, std::int64_t corners,
             const Source& source, NextIndex&& next_index) {
     const auto fail = [&](const std::string& message) {
       source.fail_here("face " + std::to_string(number) + message);
     };
-    if (corners < 1) fail(" has " + std::to_string(corners) + " corners; it needs at least 1");
+    if (corners < 0) fail(" has " + std::to_string(corners) + " corners");
+    if (corners == 0) return;
     corners_.clear();
     for (std::int64_t k = 0; k < corners; ++k)
       corners_.push_back(checked_vertex(next_index(), vertices, "face", number, source));

@@ -20,7 +20,7 @@ class ObjReader {
 
   TriangleMesh read() {
     for (; scanner_.skip_to_word(); scanner_.skip_line()) {
-      const std::string_view keyword = scanner_.word();
+      const std::string_view keyword = lower_case(scanner_.word());
       if (keyword == "v") {
         mesh_.positions.push_back(scanner_.point());
       } else if (keyword == "f" || keyword == "fo") {  // "fo" is the older name
@@ -45,6 +45,13 @@ class ObjReader {
     std::size_t line;
     const char* element;
   };
+
+  /// Some programs write capitals.
+  static std::string_view lower_case(std::string_view keyword) {
+    constexpr std::string_view capitals = "VFLP", keywords = "vflp";
+    const std::size_t place = keyword.size() == 1 ? capitals.find(keyword[0]) : std::string_view::npos;
+    return place == std::string_view::npos ? keyword : keywords.substr(place, 1);
+  }
 
   void read_face() {
     corners_.clear();

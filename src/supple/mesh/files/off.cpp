@@ -37,7 +37,8 @@ class OffReader {
  private:
   void read_keyword() {
     scanner_.skip_to_word();
-    for (const char* extra : {"ST", "C", "N"}) scanner_.accept(extra);
+    while (scanner_.accept("ST") || scanner_.accept("C") || scanner_.accept("N")) {
+    }
     if (scanner_.accept("4OFF") || scanner_.accept("nOFF") || scanner_.accept("4nOFF")) {
       scanner_.fail_here("vertices of other than three dimensions (4OFF, nOFF) are not supported");
     }

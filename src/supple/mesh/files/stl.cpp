@@ -28,11 +28,13 @@ bool equal_ignoring_case(std::string_view word, std::string_view lower_case) {
          });
 }
 
-std::uint32_t announced_facets(std::string_view bytes) {
-  return load_scalar<std::uint32_t>(bytes.data() + header_size, std::endian::little);
+// Some programs leave the number at 0; the size tells it then.
+std::uint64_t announced_facets(std::string_view bytes) {
+  const auto facets = load_scalar<std::uint32_t>(bytes.data() + header_size, std::endian::little);
+  return facets == 0 ? (bytes.size() - prologue_size) / facet_size : facets;
 }
 std::uint64_t announced_size(std::string_view bytes) {
-  return prologue_size + std::uint64_t{facet_size} * announced_facets(bytes);
+  return prologue_size + facet_size * announced_facets(bytes);
 }
 
 // Binary files may start with "solid" too. So first test the size, and zero bytes, which text has only at its

@@ -58,6 +58,14 @@ void CornerIndex::set(std::uint32_t corner, bool inserted) {
     nodes_[node].inserted += inserted ? 1u : ~0u;
 }
 
+bool CornerIndex::is_at_clear(const Node& node, const std::array<std::uint32_t, 3>& triangle,
+                              const std::array<bool, 3>& is_clear) const {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (is_clear[i] && node.low == std::array{view_->x(triangle[i]), view_->y(triangle[i])}) return true;
+  }
+  return false;
+}
+
 bool CornerIndex::may_overlap(const Node& node, const std::array<std::uint32_t, 3>& triangle) const {
   const auto [a, b, c] = triangle;
   if (std::max({view_->x(a), view_->x(b), view_->x(c)}) < node.low[0] ||

@@ -19,15 +19,16 @@ class CornerIndex {
   void remove(std::uint32_t corner) { set(corner, false); }
 
   /// Calls `visit(corner)` for corners that may lie in the closed triangle, among them all that do, until it
-  /// returns true. The triangle turns left.
+  /// returns true. It may leave out those at the places of corners that are clear. The triangle turns left.
   template <class Visit>
-  void search(std::uint32_t a, std::uint32_t b, std::uint32_t c, Visit visit) const {
-    const std::array triangle{a, b, c};
+  void search(const std::array<std::uint32_t, 3>& triangle, const std::array<bool, 3>& is_clear,
+              Visit visit) const {
     // Each step replaces one node by two of the next level, and the tree has at most 32 levels.
     std::array<std::uint32_t, 33> stack{0};
     for (std::size_t size = 1; size > 0;) {
       const Node& node = nodes_[stack[--size]];
       if (node.inserted == 0 || !may_overlap(node, triangle)) continue;
+      if (node.low == node.high && is_at_clear(node, triangle, is_clear)) continue;
       if (node.left == 0) {
         for (std::uint32_t i = node.first; i < node.last; ++i) {
           if (inserted_[corners_[i]] && visit(corners_[i])) return;
@@ -51,6 +52,8 @@ class CornerIndex {
 
   void set(std::uint32_t corner, bool inserted);
   void split(std::uint32_t node);
+  bool is_at_clear(const Node& node, const std::array<std::uint32_t, 3>& triangle,
+                   const std::array<bool, 3>& is_clear) const;
   bool may_overlap(const Node& node, const std::array<std::uint32_t, 3>& triangle) const;
 
   const OutlineView* view_ = nullptr;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -50,8 +51,10 @@ class Sweep {
  public:
   explicit Sweep(const OutlineView& view) : view_(view), strands_(Below{view}) {}
 
-  bool finds_crossing() {
+  /// Fills `is_inside_below` until it finds a crossing.
+  bool finds_crossing(std::vector<bool>& is_inside_below) {
     const auto count = static_cast<std::uint32_t>(view_.size());
+    is_inside_below.resize(count);
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -66,7 +69,9 @@ class Sweep {
           if (!take(corner, next, starts, 1) || !take(corner, previous, starts, -1)) return true;
         }
       }
-      if (!is_sound_around(order[first])) return true;
+      const std::optional<bool> inside = inside_below(order[first]);
+      if (!inside) return true;
+      for (std::size_t i = first; i < last; ++i) is_inside_below[order[i]] = *inside;
     }
     return false;
   }
@@ -98,8 +103,9 @@ class Sweep {
   }
 
   /// Checks the strands at the corner and one on each side: neighbours must not cross before one ends, and
-  /// the winding number goes from 0 to 1 and back. Strands without a step change nothing.
-  bool is_sound_around(std::uint32_t corner) const {
+  /// the winding number goes from 0 to 1 and back. Strands without a step change nothing. Returns whether the
+  /// area below the corner is inside; nothing when the outline crosses itself.
+  std::optional<bool> inside_below(std::uint32_t corner) const {
     auto strand = strands_.lower_bound(corner);
     int below = -1;
     while (strand != strands_.begin()) {
@@ -110,14 +116,15 @@ class Sweep {
         break;
       }
     }
+    const bool inside = below == 1;
     for (; strand != strands_.end(); ++strand) {
-      if (strand != strands_.begin() && will_cross(*std::prev(strand), *strand)) return false;
+      if (strand != strands_.begin() && will_cross(*std::prev(strand), *strand)) return {};
       if (strand->step == 0) continue;
-      if (strand->step != -below || (strand->step != 1 && strand->step != -1)) return false;
+      if (strand->step != -below || (strand->step != 1 && strand->step != -1)) return {};
       below = strand->step;
       if (Below{view_}(corner, *strand)) break;
     }
-    return true;
+    return inside;
   }
 
   bool will_cross(const Strand& low, const Strand& high) const {
@@ -131,8 +138,10 @@ class Sweep {
 
 }  // namespace
 
-bool crosses_itself(const OutlineView& view) {
-  return Sweep(view).finds_crossing();
+OutlineWinding find_winding(const OutlineView& view) {
+  OutlineWinding winding;
+  winding.crosses = Sweep(view).finds_crossing(winding.is_inside_below);
+  return winding;
 }
 
 }  // namespace supple

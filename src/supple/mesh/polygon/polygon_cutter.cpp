@@ -12,15 +12,16 @@ namespace {
 /// Whether the fan of the first corner covers the inside once: all triangles turn left, and all together turn
 /// around the first corner at most once.
 bool fan_stays_inside(const OutlineView& view) {
-  const auto count = static_cast<std::uint32_t>(view.size());
+  // Corners at the place of the first one that follow or precede it change nothing.
+  std::uint32_t first = 1, last = static_cast<std::uint32_t>(view.size()) - 1;
+  while (first < last && view.same_place(0, first)) ++first;
+  while (first < last && view.same_place(0, last)) --last;
   int half_turns = 0;
-  for (std::uint32_t k = 1; k + 1 < count; ++k) {
-    if (view.side(std::uint32_t{0}, k, k + 1) < 0) return false;
-    if (k > 1 && view.same_place(0, k)) return false;
+  for (std::uint32_t k = first; k < last; ++k) {
+    if (view.side(std::uint32_t{0}, k, k + 1) < 0 || view.same_place(0, k)) return false;
     if (view.before(0, k) != view.before(0, k + 1)) ++half_turns;
   }
-  return half_turns < 2 || (half_turns == 2 && !view.same_place(0, 1) &&
-                            view.side(std::uint32_t{0}, std::uint32_t{1}, count - 1) <= 0);
+  return half_turns < 2 || (half_turns == 2 && view.side(std::uint32_t{0}, first, last) <= 0);
 }
 
 bool turns_right_somewhere(const OutlineView& view) {
@@ -42,8 +43,9 @@ PolygonShape PolygonCutter::cut(std::span<const Vec3d> corners, std::span<Triang
   if (!view) return shape;
   shape.bent = is_bent(corners);
   if (!fan_stays_inside(view)) {
-    shape.crosses = crosses_itself(view);
-    if (!clipper_.clip(view, shape.crosses, triangles)) shape.crosses = true;
+    const OutlineWinding winding = find_winding(view);
+    shape.crosses = winding.crosses;
+    if (!clipper_.clip(view, winding, triangles)) shape.crosses = true;
   }
   shape.concave = !shape.crosses && turns_right_somewhere(view);
   return shape;
