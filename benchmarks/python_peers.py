@@ -8,12 +8,14 @@ wall-clock times, and the ratio to the package with the lowest and the highest o
 PYTHONPATH=build/release/python. SUPPLE_DATA names the folder of the cloths. --save writes
 benchmarks/results/<date>-MACHINE-python.csv.
 
-    overhead        the time of a frame outside of `Scene::detect`: 9 spheres of 18,000 and of 69,620
-    triangles, and an empty scene threads         two scenes in two threads against one after the other
-    frames          9 deforming spheres of 18,000 triangles: all intersecting pairs of triangles of each
-    frame proximity       cloth-ball: all pairs within a distance; and the safe step between two frames
-    closest         closest points and signed distances of many points to a sphere of 69,620 triangles self
-    losses of a batch of 16 bodies of 13,776 triangles that cut themselves
+    overhead   the time of a frame outside of `Scene::detect`: 9 spheres of 18,000 and of 69,620 triangles, and
+               an empty scene
+    threads    two scenes in two threads against one after the other
+    frames     9 deforming spheres of 18,000 triangles: all intersecting pairs of triangles of each frame
+    proximity  cloth-ball: all pairs within a distance; and the safe step between two frames
+    managers   collision managers of trimesh: an arm of 8 links among 20 objects, the time of one call
+    closest    closest points and signed distances of many points to a sphere of 69,620 triangles
+    self       losses of a batch of 16 bodies of 13,776 triangles that cut themselves
 """
 
 import argparse
@@ -259,6 +261,74 @@ def mesh_on_one_thread(mesh, positions, faces):
     return scene
 
 
+def managers(rounds):
+    """The managers of trimesh.collision: an arm of 8 links among 20 objects, in 25 poses."""
+    trimesh, fcl = package("trimesh"), package("fcl")
+    if not trimesh or not fcl:
+        print("left out: managers needs trimesh and python-fcl", file=sys.stderr)
+        return
+    import trimesh.collision
+    from supple.compat.trimesh import CollisionManager
+
+    shapes = [trimesh.creation.torus(0.4, 0.15), trimesh.creation.icosphere(subdivisions=3, radius=0.4),
+              trimesh.creation.capsule(height=0.6, radius=0.25), trimesh.creation.box((0.6, 0.5, 0.7)).subdivide().subdivide()]
+    rng = np.random.default_rng(5)
+
+    def placed(place):
+        matrix = trimesh.transformations.random_rotation_matrix(rng.random(3))
+        matrix[:3, 3] = place
+        return matrix
+
+    around = [(shapes[i % 4], placed([2.2 * np.cos(0.31 * i), 2.2 * np.sin(0.31 * i), 0.4 * (i % 5) - 0.8])) for i in range(20)]
+    link = trimesh.creation.cylinder(radius=0.12, height=0.5, sections=48).subdivide()
+
+    def arm(angle, bend):
+        return [placed([0.24 * i * np.cos(angle + bend * i), 0.24 * i * np.sin(angle + bend * i), 0.05 * i]) for i in range(8)]
+
+    poses = [arm(0.25 * i, 0.1 * (i % 5 - 2)) for i in range(25)]
+    triangles = sum(len(mesh.faces) for mesh, _ in around) + 8 * len(link.faces)
+
+    def prepared(kind):
+        own, other = kind(), kind()
+        for i, (mesh, matrix) in enumerate(around):
+            own.add_object(f"object {i}", mesh, matrix)
+        for i, matrix in enumerate(poses[0]):
+            other.add_object(f"link {i}", link, matrix)
+        return own, other
+
+    both = {"supple.compat.trimesh": prepared(CollisionManager), "trimesh, python-fcl": prepared(trimesh.collision.CollisionManager)}
+
+    def moving(call):
+        def of(own, other):
+            answers = []
+            for pose in poses:
+                for i, matrix in enumerate(pose):
+                    other.set_transform(f"link {i}", matrix)
+                answers.append(call(own, other))
+            return answers
+        return of
+
+    def still(call):
+        return lambda own, other: [call(own, other) for _ in poses]
+
+    works = {
+        "in_collision_other, moving": moving(lambda own, other: own.in_collision_other(other)),
+        "in_collision_other, still": still(lambda own, other: own.in_collision_other(other)),
+        "in_collision_other, names, moving": moving(lambda own, other: own.in_collision_other(other, return_names=True)[0]),
+        "min_distance_other, moving": moving(lambda own, other: max(own.min_distance_other(other), 0)),
+        "min_distance_other, still": still(lambda own, other: max(own.min_distance_other(other), 0)),
+        "in_collision_single": lambda own, other: [own.in_collision_single(link, pose[7]) for pose in poses],
+        "min_distance_single": lambda own, other: [max(own.min_distance_single(link, pose[7]), 0) for pose in poses],
+        "in_collision_internal": lambda own, other: [own.in_collision_internal() for _ in poses],
+        "min_distance_internal": lambda own, other: [max(own.min_distance_internal(), 0) for _ in poses],
+    }
+    for name, work in works.items():
+        times, answers = race({who: lambda of=of, work=work: work(*of) for who, of in both.items()}, rounds)
+        ours, theirs = (np.array(answers[who], float) for who in both)
+        note = f"25 calls, {triangles:,} triangles; answers differ by at most {np.abs(ours - theirs).max():.2g}, mean {ours.mean():.3g}"
+        yield from rows_of(name, {who: [each / 25 for each in values] for who, values in times.items()}, note)
+
+
 def closest(rounds):
     ball = supple.make_icosphere(59)
     x, faces = np.asarray(ball.positions), np.asarray(ball.triangles)
@@ -316,8 +386,8 @@ def self_contacts(rounds):
     yield from rows_of(f"16 bodies of {len(faces):,} triangles: loss and gradient", times, f"{count} intersecting pairs")
 
 
-PACKAGES = ("numpy", "python-fcl", "ipctk", "open3d", "libigl", "warp-lang", "torch")
-WORK = {"overhead": overhead, "threads": threads, "frames": frames, "proximity": proximity, "closest": closest, "self": self_contacts}
+PACKAGES = ("numpy", "python-fcl", "trimesh", "ipctk", "open3d", "libigl", "warp-lang", "torch")
+WORK = {"overhead": overhead, "threads": threads, "frames": frames, "proximity": proximity, "managers": managers, "closest": closest, "self": self_contacts}
 
 
 def main():

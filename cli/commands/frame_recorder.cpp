@@ -16,14 +16,15 @@ RecordedObject recorded_object(ObjectId id, const InputObject& object) {
 
 namespace {
 
-RecordingHeader header_of(const Input& input, const MovingObjects& objects, int own_rank) {
+RecordingHeader header_of(const Input& input, const MovingObjects& objects, const Ranks& ranks) {
   RecordingHeader header;
+  header.ranks = static_cast<std::uint32_t>(ranks.size());
   header.time_step = input.simulation.time_step;
   header.scene = input.simulation.scene;
   header.scene_file = input.scene_text;
   for (std::uint32_t i = 0; i < input.objects.size(); ++i) {
     const InputObject& object = input.objects[i];
-    if (const int rank = objects.rank_of({i}); rank != own_rank) {
+    if (const int rank = objects.rank_of({i}); rank != ranks.rank()) {
       const RecordedElsewhere elsewhere{static_cast<std::uint32_t>(rank), object.mesh.positions.size(),
                                         object.mesh.triangles.size()};
       header.objects.push_back({{i}, object.options, {}, {}, elsewhere});
@@ -44,7 +45,7 @@ void FrameRecorder::start(const std::string& file_name, const Input& input) {
   const auto run = static_cast<std::uint32_t>(
       ranks_.largest(rank == 0 ? static_cast<int>(std::random_device()() >> 1) : 0));
   const auto create = [&] {
-    recorder_.emplace(file_name, header_of(input, objects_, rank),
+    recorder_.emplace(file_name, header_of(input, objects_, ranks_),
                       RecordingRank{static_cast<std::uint32_t>(rank), run});
   };
   ranks_.together([&] {

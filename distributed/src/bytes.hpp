@@ -1,8 +1,10 @@
 #pragma once
 
+#include <boost/crc.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -14,6 +16,13 @@ namespace supple {
 
 template <class Value>
 concept Plain = std::is_trivially_copyable_v<Value>;
+
+/// CRC-64 of ECMA-182: it differs for any change of up to 64 adjacent bits.
+inline std::uint64_t checksum_of(std::initializer_list<std::span<const std::byte>> parts) {
+  boost::crc_optimal<64, 0x42f0e1eba9ea3693u, ~std::uint64_t{0}, ~std::uint64_t{0}, true, true> checksum;
+  for (const std::span<const std::byte> part : parts) checksum.process_bytes(part.data(), part.size());
+  return checksum.checksum();
+}
 
 /// Appends values to a message.
 class Writer {

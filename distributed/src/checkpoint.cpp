@@ -1,5 +1,6 @@
 // Checkpoints: one file with a head, a table of objects and parts, their data, and the pairs of the last
-// step. Each rank writes and reads its own ranges of it.
+// step. Checksums cover every byte, so that each rank finds damage in what it takes. Each rank writes and
+// reads its own ranges of it.
 
 #include <algorithm>
 #include <array>
@@ -16,14 +17,17 @@ namespace {
 
 struct Head {
   std::array<char, 8> magic{'s', 'u', 'p', 'p', 'l', 'e', 'd', 's'};
-  std::uint64_t version = 1;
+  std::uint64_t version = 2;
   std::uint64_t step = 0;
   std::uint64_t objects = 0, events = 0;  ///< rows of the table, and bytes at the end of the file
+  std::uint64_t of_events = 0;            ///< the sum of their checksums
+  std::uint64_t checksum = 0;             ///< of what is before it
 };
 
 struct Row {
   ObjectId id;
-  std::uint64_t size = 0;  ///< in bytes
+  std::uint64_t size = 0;      ///< in bytes
+  std::uint64_t checksum = 0;  ///< of what is before it, and of the data
 };
 
 struct Event {
@@ -33,6 +37,18 @@ struct Event {
 
 std::span<const std::byte> bytes_of(const auto& rows) {
   return std::as_bytes(std::span(rows));
+}
+
+/// The checksum of a head or a row, and of data that belong to it.
+template <class Checked>
+std::uint64_t checksum_with(const Checked& head, std::span<const std::byte> data) {
+  return checksum_of({bytes_of(std::span(&head, 1)).first(offsetof(Checked, checksum)), data});
+}
+
+std::uint64_t sum_of_checksums(std::span<const Event> events) {
+  std::uint64_t sum = 0;
+  for (const Event& event : events) sum += checksum_of({bytes_of(std::span(&event, 1))});
+  return sum;
 }
 
 /// A file of all ranks. Calls are collective, but for `read` and `write`.
@@ -98,30 +114,34 @@ void DistributedScene::Implementation::save(const std::string& path) {
   std::vector<std::byte> data;
   std::vector<Row> table;
   std::vector<Event> events;
-  ranks.together([&] {
+  ranks.begin([&] {
     Writer to(data);
     for (const auto& [id, object] : homes_) {
       const std::size_t first = data.size();
       object.write(to);
-      table.push_back({id, data.size() - first});
+      Row& row = table.emplace_back(Row{id, data.size() - first});
+      row.checksum = checksum_with(row, std::span(data).subspan(first));
     }
     for (std::size_t list = 0; list < pair_lists; ++list) {
       for (const ObjectPair& pair : events_[list].pairs()) events.push_back({pair, list});
     }
+    return CallText("save").add("path", path);
   });
   const std::array<std::span<const std::byte>, 3> parts{bytes_of(table), bytes_of(data), bytes_of(events)};
-  std::array<std::uint64_t, 3> before{}, total{};
+  std::array<std::uint64_t, 3> before{};
+  std::array<std::uint64_t, 4> total{0, 0, 0, sum_of_checksums(events)};
   for (std::size_t i = 0; i < parts.size(); ++i) before[i] = total[i] = parts[i].size();
   MPI_Exscan(MPI_IN_PLACE, before.data(), 3, MPI_UINT64_T, MPI_SUM, ranks.handle());
   if (ranks.rank() == 0) before = {};
-  MPI_Allreduce(MPI_IN_PLACE, total.data(), 3, MPI_UINT64_T, MPI_SUM, ranks.handle());
+  MPI_Allreduce(MPI_IN_PLACE, total.data(), 4, MPI_UINT64_T, MPI_SUM, ranks.handle());
   const std::string unfinished = path + ".part";
   if (ranks.rank() == 0) std::remove(unfinished.c_str());
   ranks.together([] {});  // all wait until it is gone
   try {
     SharedFile file(ranks, unfinished, MPI_MODE_CREATE | MPI_MODE_WRONLY);
     ranks.together([&] {
-      const Head head{.step = step_, .objects = total[0] / sizeof(Row), .events = total[2]};
+      Head head{.step = step_, .objects = total[0] / sizeof(Row), .events = total[2], .of_events = total[3]};
+      head.checksum = checksum_with(head, {});
       if (ranks.rank() == 0) file.write(0, bytes_of(std::span(&head, 1)));
       std::uint64_t at = sizeof head;
       for (std::size_t i = 0; i < parts.size(); at += total[i++]) file.write(at + before[i], parts[i]);
@@ -136,8 +156,9 @@ void DistributedScene::Implementation::save(const std::string& path) {
 }
 
 void DistributedScene::Implementation::load(const std::string& path) {
-  ranks.together([&] {
+  ranks.begin([&] {
     if (!homes_.empty()) fail("load: the scene has objects; load into a new one");
+    return CallText("load").add("path", path);
   });
   SharedFile file(ranks, path, MPI_MODE_RDONLY);
   std::map<ObjectId, HomeObject> loaded;
@@ -153,7 +174,8 @@ void DistributedScene::Implementation::load(const std::string& path) {
       is_unusable("is a checkpoint of version " + std::to_string(head.version) + "; this program reads " +
                   std::to_string(Head().version));
     const auto cut_off = [&] { is_unusable("is cut off or damaged; take an older checkpoint"); };
-    if (head.objects > size / sizeof(Row) || head.events > size || head.events % sizeof(Event) != 0)
+    if (head.checksum != checksum_with(head, {}) || head.objects > size / sizeof(Row) || head.events > size ||
+        head.events % sizeof(Event) != 0)
       cut_off();
     std::vector<Row> table(head.objects);
     file.read(sizeof head, std::as_writable_bytes(std::span(table)));
@@ -166,9 +188,10 @@ void DistributedScene::Implementation::load(const std::string& path) {
     std::uint64_t at = 0;
     for (const Row& row : table) {
       const double share = static_cast<double>(at) / static_cast<double>(std::max<std::uint64_t>(total, 1));
-      if (static_cast<int>(share * ranks.size()) == ranks.rank()) {
+      if (std::min(static_cast<int>(share * ranks.size()), ranks.size() - 1) == ranks.rank()) {
         std::vector<std::byte>& bytes = parts[row.id].emplace_back(row.size);
         file.read(first_byte + at, bytes);
+        if (row.checksum != checksum_with(row, bytes)) cut_off();
       }
       at += row.size;
     }
@@ -183,6 +206,7 @@ void DistributedScene::Implementation::load(const std::string& path) {
     if (ranks.rank() == 0) {
       events.resize(head.events / sizeof(Event));
       file.read(first_byte + total, std::as_writable_bytes(std::span(events)));
+      if (head.of_events != sum_of_checksums(events)) cut_off();
     }
   });
   outbox_.clear();

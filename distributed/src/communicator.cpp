@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "core/error.hpp"
@@ -60,16 +61,38 @@ bool Communicator::any(bool value) const {
   return found != 0;
 }
 
-void Communicator::agree(bool failed, const std::string& error) const {
-  int first = failed ? rank_ : size_;
-  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, handle_);
-  if (first == size_) return;
+void Communicator::agree(bool failed, const std::string& error, const std::string& call) const {
+  const std::uint64_t hash = checksum_of({std::as_bytes(std::span(call))});
+  std::uint64_t largest[] = {failed ? static_cast<std::uint64_t>(size_ - rank_) : 0, hash, ~hash};
+  MPI_Allreduce(MPI_IN_PLACE, largest, 3, MPI_UINT64_T, MPI_MAX, handle_);
+  if (largest[0] == 0 && largest[1] == ~largest[2]) return;
+  if (largest[0] == 0) fail_other_calls(call);
+  const int first = size_ - static_cast<int>(largest[0]);
   std::string message = first == rank_ ? error : std::string();
   auto length = static_cast<int>(message.size());
   MPI_Bcast(&length, 1, MPI_INT, first, handle_);
   message.resize(static_cast<std::size_t>(length));
   MPI_Bcast(message.data(), length, MPI_CHAR, first, handle_);
   throw SharedError("rank " + std::to_string(first) + ": " + message);
+}
+
+/// Collective: names the first line in which a rank differs from rank 0.
+void Communicator::fail_other_calls(const std::string& call) const {
+  Inbox inbox;
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(call));
+  share({bytes.begin(), bytes.end()}, inbox);
+  std::vector<std::string> calls;
+  for (const Inbox::Message& message : inbox.messages_)
+    calls.emplace_back(reinterpret_cast<const char*>(message.bytes.data()), message.bytes.size());
+  const auto other = std::find_if(calls.begin(), calls.end(), [&](const auto& c) { return c != calls[0]; });
+  const auto [p, q] = std::mismatch(calls[0].cbegin(), calls[0].cend(), other->cbegin(), other->cend());
+  const auto line_at = [](const std::string& text, auto place) {
+    const auto begin = std::find(std::make_reverse_iterator(place), text.rend(), '\n').base();
+    return std::string(begin, std::find(place, text.end(), '\n'));
+  };
+  throw SharedError("the ranks make different calls: on rank 0, " + line_at(calls[0], p) + "; on rank " +
+                    std::to_string(other - calls.begin()) + ", " + line_at(*other, q) +
+                    "; give all ranks the same");
 }
 
 void Communicator::exchange(Outbox& outbox, Inbox& inbox) {

@@ -78,17 +78,26 @@ class Communicator {
   /// `work` may call it again, and so end on all ranks where it fails on one.
   template <class Work>
   void together(const Work& work) const {
-    std::string error;
+    begin([&] {
+      work();
+      return std::string();
+    });
+  }
+  /// Collective, the first in each call: as `together` for `arguments`, which checks the arguments of this
+  /// rank and returns them as lines `name is value`. Throws on all ranks when these differ between ranks.
+  template <class Arguments>
+  void begin(const Arguments& arguments) const {
+    std::string error, call;
     bool failed = false;
     try {
-      work();
+      call = arguments();
     } catch (const SharedError&) {
       throw;
     } catch (const std::exception& e) {
       failed = true;
       error = e.what();
     }
-    agree(failed, error);
+    agree(failed, error, call);
   }
   /// Collective: each rank sends its messages and gets those to it. Only ranks with a message for each other
   /// communicate. The messages in `outbox` are undefined afterwards, and those in `inbox` are valid until its
@@ -108,7 +117,8 @@ class Communicator {
   std::uint64_t bytes_sent = 0, messages_sent = 0;  ///< to other ranks
 
  private:
-  void agree(bool failed, const std::string& error) const;
+  void agree(bool failed, const std::string& error, const std::string& call) const;
+  [[noreturn]] void fail_other_calls(const std::string& call) const;
 
   MPI_Comm handle_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;

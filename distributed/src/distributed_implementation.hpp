@@ -11,6 +11,7 @@
 #include "answers/detection.hpp"
 #include "answers/impact/step_search.hpp"
 #include "answers/untested.hpp"
+#include "call_text.hpp"
 #include "communicator.hpp"
 #include "found_lists.hpp"
 #include "objects/home_object.hpp"
@@ -80,7 +81,7 @@ class DistributedScene::Implementation {
   VerifyReport verify(const CallLimits& limits);
   std::optional<ContinuousContact> earliest_impact();
   SafeStep collision_free_step(const StepOptions& step);
-  std::vector<ProximityPair> distances(double max_distance);
+  std::vector<ProximityPair> distances(double max_distance, const CallLimits& limits);
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& closest_options);
   void save(const std::string& path);
@@ -92,6 +93,9 @@ class DistributedScene::Implementation {
   DistributedStats stats;
 
  private:
+  CallText call(const char* name) const {
+    return CallText(name).add("pair filter", std::string(filter_ ? "set" : "none"));
+  }
   World& world() { return local_.world(); }
   void prepare(bool by_objects = false, double growth = 0);
   void exchange_units();

@@ -14,16 +14,37 @@
 namespace supple {
 namespace {
 
-SceneOptions checked(SceneOptions options, const Communicator& communicator) {
-  const auto refuse = [](const char* what) {
-    fail(std::string("DistributedScene: ") + what + "; use a Scene for comparisons");
-  };
-  if (options.bounding_volume != BoundingVolume::aabb) refuse("the bounding volume is the box");
-  if (options.comparison.colliding_vertices) refuse("colliding vertices need whole octrees");
-  if (options.comparison.lazy_refit) refuse("lazy refit needs whole octrees");
-  if (options.threads == 0)
-    options.threads = std::max(
-        1u, Parallel(0).worker_count() / static_cast<std::uint32_t>(communicator.ranks_of_machine()));
+constexpr const char* placements[] = {"gathered", "owner", "spread"};
+
+/// Collective: the options, which all ranks have.
+const DistributedOptions& checked(const DistributedOptions& options, const Communicator& ranks) {
+  ranks.begin([&] {
+    const auto refuse = [](const char* what) {
+      fail(std::string("DistributedScene: ") + what + "; use a Scene for comparisons");
+    };
+    const SceneOptions& scene = options.scene;
+    check(scene, "DistributedScene");
+    if (scene.bounding_volume != BoundingVolume::aabb) refuse("the bounding volume is the box");
+    if (scene.comparison.colliding_vertices) refuse("colliding vertices need whole octrees");
+    if (scene.comparison.lazy_refit) refuse("lazy refit needs whole octrees");
+    if (options.cluster_triangles == 0)
+      fail("DistributedOptions: cluster_triangles is 0; it must be positive");
+    if (!(options.max_imbalance >= 1))
+      fail("DistributedOptions: max_imbalance is " + std::to_string(options.max_imbalance) +
+           "; it must be at least 1");
+    return CallText("DistributedScene")
+        .add("results", std::string(placements[static_cast<std::size_t>(options.results)]))
+        .add("cluster_triangles", options.cluster_triangles)
+        .add("max_imbalance", options.max_imbalance)
+        .add_options(scene);
+  });
+  return options;
+}
+
+/// Collective: the options of the scene with the threads of this rank.
+SceneOptions with_threads(SceneOptions options, const Communicator& communicator) {
+  const auto ranks = static_cast<std::uint32_t>(communicator.ranks_of_machine());
+  if (options.threads == 0) options.threads = std::max(1u, Parallel(0).worker_count() / ranks);
   return options;
 }
 
@@ -32,16 +53,11 @@ SceneOptions checked(SceneOptions options, const Communicator& communicator) {
 DistributedScene::Implementation::Implementation(MPI_Comm communicator,
                                                  const DistributedOptions& distributed_options)
     : ranks(communicator),
-      options(distributed_options),
+      options(checked(distributed_options, ranks)),
       regions_(ranks),
-      local_(checked(options.scene, ranks)),
+      local_(with_threads(options.scene, ranks)),
       detection_(local_.world()),
-      step_search_(local_.world()) {
-  if (options.cluster_triangles == 0) fail("DistributedOptions: cluster_triangles is 0; it must be positive");
-  if (!(options.max_imbalance >= 1))
-    fail("DistributedOptions: max_imbalance is " + std::to_string(options.max_imbalance) +
-         "; it must be at least 1");
-}
+      step_search_(local_.world()) {}
 
 void DistributedScene::Implementation::add(ObjectId id, const PositionsView& positions,
                                            const TrianglesView& triangles, const ObjectPart* part,
@@ -128,7 +144,7 @@ void DistributedScene::Implementation::count_messages() {
 
 const DetectResult& DistributedScene::Implementation::detect(const DetectRequest& request) {
   Timer total;
-  ranks.together([&] {
+  ranks.begin([&] {
     question_ = supple::question_of(request, options.scene);
     const auto refuse = [](const char* what) { fail(std::string("DistributedScene::detect: ") + what); };
     if (request.max_contacts != DetectRequest{}.max_contacts) refuse("max_contacts is not supported");
@@ -140,6 +156,12 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
         fail("detect: penetration needs all intersections, but " + object.options.name +
              " has vertex groups; remove them with set_vertex_groups");
     }
+    return call("detect")
+        .add("contacts", question_.contacts)
+        .add_options(question_.impact.impact)
+        .add("element_kinds", question_.impact.kinds)
+        .add("proximity_listing", question_.proximity_listing)
+        .add("depths", question_.depths);
   });
   prepare(question_.has_penetration());
   result_ = {};
@@ -236,8 +258,8 @@ std::optional<ContinuousContact> DistributedScene::earliest_impact() {
 SafeStep DistributedScene::collision_free_step(const StepOptions& options) {
   return implementation_->collision_free_step(options);
 }
-std::vector<ProximityPair> DistributedScene::distances(double max_distance) {
-  return implementation_->distances(max_distance);
+std::vector<ProximityPair> DistributedScene::distances(double max_distance, const CallLimits& limits) {
+  return implementation_->distances(max_distance, limits);
 }
 void DistributedScene::closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                                const ClosestOptions& options) {

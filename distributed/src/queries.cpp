@@ -17,6 +17,7 @@
 
 #include "core/error.hpp"
 #include "core/sort_once.hpp"
+#include "core/stop_signal.hpp"
 #include "distributed_implementation.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
@@ -227,13 +228,17 @@ void DistributedScene::Implementation::send_nearest(std::span<const PointQuery> 
 void DistributedScene::Implementation::closest(std::span<const Vec3d> points,
                                                std::span<std::optional<ClosestPoint>> results,
                                                const ClosestOptions& closest_options) {
-  ranks.together([&] {
+  const QueryFilter& seen = closest_options.filter;
+  ranks.begin([&] {
     check_counts(points.size(), results.size(), "closest");
     check_distance(closest_options.max_distance, "closest");
     if (closest_options.signed_distance)
       fail("DistributedScene::closest: signed_distance is not supported; take the object to one Scene");
+    return call("closest")
+        .add("object", seen.object)
+        .add("mask", seen.mask)
+        .add("max_distance", closest_options.max_distance);
   });
-  const QueryFilter& seen = closest_options.filter;
   question_ = {};
   by_objects_ = false;
   growth_ = 0;
@@ -287,15 +292,22 @@ ClosestPoint DistributedScene::Implementation::nearest_of(std::span<const Candid
   return nearest[found ? found->object.index : 0]->closest;
 }
 
-std::vector<ProximityPair> DistributedScene::Implementation::distances(double max_distance) {
-  ranks.together([&] { check_distance(max_distance, "distances"); });
+std::vector<ProximityPair> DistributedScene::Implementation::distances(double max_distance,
+                                                                       const CallLimits& limits) {
+  ranks.begin([&] {
+    check_distance(max_distance, "distances");
+    return call("distances").add("max_distance", max_distance);
+  });
   // Rounded up by more than the sums of boxes can lose.
   const double growth = 0.5 * max_distance * (1 + 0x1p-19) + std::numeric_limits<float>::min();
   question_ = {};
   prepare(true, std::min(growth, double{std::numeric_limits<float>::max()}));
   ranks.together([&] {
     clear_lists();
-    for (const ProximityPair& pair : Queries(world()).distances(max_distance, {})) {
+    const std::vector<ProximityPair> nearest = Queries(world()).distances(max_distance, limits);
+    // The other ranks would take an empty list for an answer.
+    if (stop_of(limits).stop_requested()) fail("distances: it was stopped, so there is no answer");
+    for (const ProximityPair& pair : nearest) {
       const ProximityPair found = renumbered(pair, local_);
       lists_of(found.object_a).proximity_pairs.push_back(found);
     }

@@ -51,6 +51,7 @@ std::optional<ContinuousContact> DistributedScene::Implementation::first_of_all(
 }
 
 std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impact() {
+  ranks.begin([&] { return call("earliest_impact"); });
   const SceneOptions& of = options.scene;
   const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
   question_ = {.contacts = ContactKinds::continuous, .impact = search};
@@ -63,7 +64,10 @@ std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impa
 }
 
 SafeStep DistributedScene::Implementation::collision_free_step(const StepOptions& step) {
-  ranks.together([&] { check(step, "collision_free_step"); });
+  ranks.begin([&] {
+    check(step, "collision_free_step");
+    return call("collision_free_step").add_options(step);
+  });
   const SceneOptions& of = options.scene;
   const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
   question_ = {.contacts = ContactKinds::continuous, .impact = search, .safe_step = step};

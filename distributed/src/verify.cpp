@@ -139,11 +139,12 @@ void for_each_count(const Visit& visit) {
 }  // namespace
 
 VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) {
-  ranks.together([&] {
+  ranks.begin([&] {
     if (!has_detected_)
       fail("verify: nothing was detected at the present positions; call detect directly before it");
     if (question_.contacts == ContactKinds::none)
       fail("verify: the last detect searched no contacts, so there is nothing to compare");
+    return call("verify");
   });
   ranks.together([&] {
     to_all_.clear();

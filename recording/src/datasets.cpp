@@ -53,6 +53,7 @@ void write_header(hid_t file, const RecordingHeader& header) {
   attribute("version", format_version);
   attribute("program_version", std::string(SUPPLE_VERSION));
   attribute("time_step", header.time_step);
+  if (header.ranks != 1) attribute("ranks", header.ranks);
   write_options(file, "/", header.scene);
   write_text(file, "scene_file", header.scene_file);
 }

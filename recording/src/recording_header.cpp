@@ -145,6 +145,7 @@ RecordingHeader read_header(const InputFile& file, std::uint32_t version,
   header.time_step = file.number("/", "time_step");
   read_options(file, "/", version, header.scene);
   header.scene_file = file.text_dataset("scene_file");
+  if (file.has_attribute("/", "ranks")) header.ranks = file.count("/", "ranks");
   const std::size_t count = file.count_links("objects");
   for (std::size_t place = 0; place < count; ++place)
     header.objects.push_back(read_object(file_of(place), version, place));

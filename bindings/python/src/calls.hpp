@@ -199,8 +199,14 @@ auto run_stoppable(const Stop* stop, const Call& call, bool can_repeat = true) {
   while (true) {
     const StoppableCall stoppable(stop);
     auto result = [&] {
-      const WithoutGil without_gil;
-      return call(stoppable.token());
+      try {
+        const WithoutGil without_gil;
+        return call(stoppable.token());
+      } catch (const Error&) {
+        // Calls of several ranks end with an error when they are stopped.
+        if (stoppable.was_interrupted() && PyErr_CheckSignals() != 0) throw nb::python_error();
+        throw;
+      }
     }();
     if (!stoppable.was_interrupted()) return result;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();

@@ -66,18 +66,20 @@ DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const c
   return request;
 }
 
-PairFilter filter_of(nb::object function) {
+HeldFunction held(nb::object function) {
   if (function.is_none()) return {};
-  // The last copy may be destroyed without the GIL.
-  auto* const held = new nb::object(std::move(function));
-  const std::shared_ptr<nb::object> shared(held, [](nb::object* object) {
-    nb::gil_scoped_acquire acquire;
-    delete object;
-  });
-  return [shared](ObjectId a, ObjectId b) {
+  return {new nb::object(std::move(function)), [](nb::object* object) {
+            nb::gil_scoped_acquire acquire;
+            delete object;
+          }};
+}
+
+PairFilter filter_of(const HeldFunction& function) {
+  if (!function) return {};
+  return [function](ObjectId a, ObjectId b) {
     const CallGuard::Callback callback;
     nb::gil_scoped_acquire acquire;
-    const nb::object answer = (*shared)(a, b);
+    const nb::object answer = (*function)(a, b);
     bool accepts = false;
     if (!nb::try_cast(answer, accepts)) {
       throw nb::type_error("the pair filter must return True or False");

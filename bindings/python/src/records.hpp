@@ -4,6 +4,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -137,9 +138,9 @@ std::string layout_name() {
   }
 }
 
-/// Adds (bytes of a record, its members) to `layouts`.
+/// The members of a record, as `add_member` lists them.
 template <class Row>
-void add_layout(nb::dict& layouts) {
+nb::list members_of() {
   nb::list members;
   if constexpr (IsFound<Row>::value) {
     members.append(nb::make_tuple("found", "?", std::size_t{0}, offsetof(Row, found), nb::none(),
@@ -148,7 +149,40 @@ void add_layout(nb::dict& layouts) {
   } else {
     add_members<Row>(members, 0);
   }
-  layouts[layout_name<Row>().c_str()] = nb::make_tuple(sizeof(Row), members);
+  return members;
+}
+
+/// Adds (bytes of a record, its members) to `layouts`.
+template <class Row>
+void add_layout(nb::dict& layouts) {
+  layouts[layout_name<Row>().c_str()] = nb::make_tuple(sizeof(Row), members_of<Row>());
+}
+
+/// The places of the bytes of a record that belong to no member.
+template <class Row>
+std::vector<std::size_t> padding_of() {
+  std::vector<std::size_t> places;
+  std::vector<bool> is_used(sizeof(Row));
+  for (const nb::handle member : members_of<Row>()) {
+    const auto code = nb::cast<std::string>(member[1]);
+    const std::size_t size = code == "?" ? 1 : static_cast<std::size_t>(code[1] - '0');
+    const auto count = std::max<std::size_t>(nb::cast<std::size_t>(member[2]), 1);
+    std::fill_n(is_used.begin() + nb::cast<std::ptrdiff_t>(member[3]), size * count, true);
+  }
+  for (std::size_t i = 0; i < sizeof(Row); ++i) {
+    if (!is_used[i]) places.push_back(i);
+  }
+  return places;
+}
+
+/// Clears these bytes, so that equal tables have equal bytes: those that `tobytes`, pickles and hashes read.
+template <class Row>
+void clear_padding(std::span<const Row> rows) {
+  static const std::vector<std::size_t> places = padding_of<Row>();
+  for (const Row& row : rows) {
+    auto* const bytes = reinterpret_cast<std::byte*>(const_cast<Row*>(&row));  // the lists are not constant
+    for (const std::size_t place : places) bytes[place] = std::byte{0};
+  }
 }
 
 /// Read-only memory as an array of NumPy, which keeps `owner`.
@@ -170,6 +204,7 @@ nb::object to_table(std::span<const Row> rows, nb::handle owner) {
   } else if constexpr (std::is_same_v<Row, Vec3d>) {
     return nb::make_tuple(nb::none(), to_array<double, 3>(rows.data(), rows.size(), owner));
   } else {
+    clear_padding(rows);
     return nb::make_tuple(layout_name<Row>(), to_array<std::uint8_t>(rows.data(), rows.size_bytes(), owner));
   }
 }

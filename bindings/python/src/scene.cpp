@@ -85,7 +85,7 @@ std::unique_ptr<Result> SceneCore::detect(const nb::dict& keywords, Stop* stop) 
 /// Its lists are copied, so they need no scene.
 nb::object SceneCore::search(const nb::dict& keywords, nb::object only, Stop* stop) {
   DetectRequest request = request_of(keywords, scene().options(), "search");
-  const PairFilter filter = filter_of(std::move(only));
+  const PairFilter filter = filter_of(held(std::move(only)));
   const Alone alone(guard());
   const DetectResult found = run_stoppable(stop, [&](std::stop_token token) {
     request.stop = std::move(token);
@@ -118,7 +118,7 @@ void bind_scene(nb::module_& module) {
     return to_own_array<double>(std::vector<double>(r.begin(), r.end()));
   });
 
-  nb::class_<SceneCore> scene(module, "Scene");
+  nb::class_<SceneCore> scene(module, "Scene", nb::type_slots(slots_of<SceneCore>));
   const auto setter = [&](const char* name, auto set) { scene.def(name, set); };
   scene.def(nb::init<nb::dict>());
   bind_shared_calls(scene);

@@ -16,6 +16,25 @@ namespace supple::python {
 
 namespace nb = nanobind;
 
+/// A function of Python that the library calls, or none. The type of who keeps it visits it (`traverse`).
+using HeldFunction = std::shared_ptr<nb::object>;
+
+/// For the garbage collector: a scene can reach itself through a function that it calls. The functions and
+/// the objects between them end such cycles, so the type clears nothing. `core.for_each_held(visit)` calls
+/// `visit(object)` for all that Python gave to it.
+template <class Core>
+int traverse(PyObject* self, visitproc visit, void* arg) noexcept {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  int stop = 0;
+  nb::inst_ptr<Core>(self)->for_each_held([&](const nb::object& held) {
+    if (stop == 0) stop = visit(held.ptr(), arg);
+  });
+  return stop;
+}
+template <class Core>
+inline PyType_Slot slots_of[] = {{Py_tp_traverse, reinterpret_cast<void*>(&traverse<Core>)}, {0, nullptr}};
+
 /// What a result of Python reads. The scene has its memory until the next `detect`, which then leaves it
 /// here.
 struct Lists {
@@ -53,6 +72,7 @@ struct SceneState {
   Scene scene;
   CallGuard guard;
   LastLists last;
+  HeldFunction filter;
   std::map<ObjectId, nb::object> shared;  ///< arrays that the scene reads in place
 };
 
@@ -65,6 +85,12 @@ class SceneCore {
   SceneState& state() { return *state_; }
   std::shared_ptr<SceneState> shared_state() { return state_; }
   CallGuard& guard() { return state_->guard; }
+  HeldFunction& filter() { return state_->filter; }
+  template <class Visit>
+  void for_each_held(const Visit& visit) const {
+    if (state_->filter) visit(*state_->filter);
+    for (const auto& [id, array] : state_->shared) visit(array);
+  }
   /// The object no longer reads an array in place.
   void forget_shared(ObjectId id) { state_->shared.erase(id); }
   std::unique_ptr<Result> detect(const nb::dict& request, Stop* stop);
@@ -78,8 +104,10 @@ class SceneCore {
 nb::object vertices_of_records(const Scene& scene, const std::string& record, const List<std::uint8_t>& rows);
 /// A request from keywords: those of `DetectRequest`. `options` are those of the scene.
 DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const char* where);
-/// A filter that calls a function of Python, or none.
-PairFilter filter_of(nb::object function);
+/// Keeps a function; none for None. Its last copy may be destroyed without the GIL.
+HeldFunction held(nb::object function);
+/// A filter that calls it, or none.
+PairFilter filter_of(const HeldFunction& function);
 /// The options of an object from keywords and arrays.
 ObjectOptions object_options_of(const nb::dict& keywords,
                                 const std::optional<List<std::uint32_t>>& same_vertex,

@@ -76,8 +76,10 @@ void bind_shared_calls(nb::class_<Core>& scene) {
   scene.def(
       "set_pair_filter",
       [](Core& core, nb::object function) {
+        HeldFunction filter = held(std::move(function));
         const Alone alone(core.guard());
-        core.scene().set_pair_filter(filter_of(std::move(function)));
+        core.scene().set_pair_filter(filter_of(filter));
+        core.filter().swap(filter);
       },
       nb::arg().none());
   scene.def("earliest_impact", [](Core& core) {

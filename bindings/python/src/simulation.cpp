@@ -80,17 +80,13 @@ MassSpringMotion springs_of(const nb::dict& keywords,
 }
 
 /// Calls `function(seconds, positions)`, which may change the (n, 3) array or return another one.
-MotionFunction motion_of(nb::object function) {
-  const std::shared_ptr<nb::object> shared(new nb::object(std::move(function)), [](nb::object* object) {
-    nb::gil_scoped_acquire acquire;
-    delete object;
-  });
-  return [shared](double seconds, std::span<Vec3d> positions) {
+MotionFunction motion_of(const HeldFunction& function) {
+  return [function](double seconds, std::span<Vec3d> positions) {
     nb::gil_scoped_acquire acquire;
     auto* const copy = new std::vector<Vec3d>(positions.begin(), positions.end());
     const nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> array(copy->data(), {copy->size(), 3},
                                                                  owner_of(copy));
-    const nb::object answer = (*shared)(seconds, array);
+    const nb::object answer = (*function)(seconds, array);
     if (answer.is_none()) {
       std::copy(copy->begin(), copy->end(), positions.begin());
       return;
@@ -119,7 +115,13 @@ nb::object add_object(SimulationCore& core, const MeshData& mesh, const nb::dict
     return nb::cast(core.simulation().add(mesh.mesh, options, how...));
   };
   if (kind == "springs") return add(springs_of(nb::cast<nb::dict>(motion), fixed_vertices, handles));
-  if (kind == "function") return add(motion_of(std::move(motion)));
+  if (kind == "function") {
+    const HeldFunction function = held(std::move(motion));
+    const Alone alone(core.guard());
+    const ObjectId added = core.simulation().add(mesh.mesh, options, motion_of(function));
+    core.motions().emplace(added, function);
+    return nb::cast(added);
+  }
   if (kind == "rigid") {
     RigidMotion rigid;
     set_options(rigid, nb::cast<nb::dict>(motion), "add");
@@ -132,13 +134,15 @@ nb::object add_object(SimulationCore& core, const MeshData& mesh, const nb::dict
 }  // namespace
 
 void bind_simulation(nb::module_& module) {
-  nb::class_<SimulationCore> simulation(module, "Simulation");
+  nb::class_<SimulationCore> simulation(module, "Simulation", nb::type_slots(slots_of<SimulationCore>));
   simulation.def(nb::init<nb::dict>());
   simulation.def("add", &add_object, nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(),
                  nb::arg());
   simulation.def("remove", [](SimulationCore& core, ObjectId id) {
+    HeldFunction motion;
     const Alone alone(core.guard());
     core.simulation().remove(id);
+    if (const auto found = core.motions().extract(id)) motion = std::move(found.mapped());
   });
   simulation.def(
       "detect",

@@ -2,6 +2,7 @@
 
 #include "supple/simulation.hpp"
 
+#include <map>
 #include <memory>
 
 #include "calls.hpp"
@@ -15,6 +16,7 @@ struct SimulationState {
   Simulation simulation;
   CallGuard guard;
   LastLists last;
+  std::map<ObjectId, HeldFunction> motions;
 };
 
 /// The simulation of Python.
@@ -25,6 +27,11 @@ class SimulationCore {
   Simulation& simulation() { return state_->simulation; }
   std::shared_ptr<SimulationState> state() { return state_; }
   CallGuard& guard() { return state_->guard; }
+  std::map<ObjectId, HeldFunction>& motions() { return state_->motions; }
+  template <class Visit>
+  void for_each_held(const Visit& visit) const {
+    for (const auto& [id, motion] : state_->motions) visit(*motion);
+  }
   template <class Advance>
   std::unique_ptr<Result> run(const nb::dict& keywords, const char* where, Stop* stop,
                               const Advance& advance);

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import atexit
+import importlib
 import os
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _core
 from ._attach import View, attach
@@ -54,6 +55,20 @@ from ._simulation import MassSpringBody, SimulatedObject, Simulation, respond
 from ._tables import Record, Table, dtypes
 from ._view import view
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from . import compat as compat, plot as plot, torch as torch, typing as typing
+    from .typing import SceneOptions
+else:
+
+    def __getattr__(name: str) -> Any:
+        """Modules that are loaded when they are used: `supple.plot`."""
+        if name in ("compat", "plot", "torch", "typing"):
+            return importlib.import_module(f"supple.{name}")
+        raise AttributeError(f"module 'supple' has no attribute {name!r}")
+
+
 atexit.register(_core.end_calls)
 os.register_at_fork(after_in_child=_core.forget_calls)
 for _error in (Error, MotionError):
@@ -79,7 +94,7 @@ def options(structure: str = "SceneOptions") -> list[Option]:
     return [each._replace(name="self_collision") if each.name == "self" else each for each in found]
 
 
-def method_of_2007(**scene: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+def method_of_2007(**scene: Unpack[SceneOptions]) -> tuple[dict[str, Any], dict[str, Any]]:
     """The method of the paper's program: the options of a scene, with those that are given, and those of its
     objects. `scene, objects = supple.method_of_2007(); s = supple.Scene(**scene); s.add(mesh, **objects)`. A
     simulation also takes `fused_refit=True`; the root of the scene octree is the cube of the scene:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import operator
+import os
 import warnings
-from typing import Any
+from typing import Any, Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -164,6 +165,31 @@ def number(value: Any, what: str) -> float:
     return float(value)
 
 
+def function(value: Any, what: str, of: str) -> None:
+    """Raises a `TypeError` unless it is a function of the user, or None."""
+    if value is not None and not callable(value):
+        raise TypeError(f"{what} is {value!r}; it must be a function of {of}, or None")
+
+
+def path(value: Any, what: str) -> str:
+    """The path of a file."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise TypeError(f"{what} is {value!r}; it must be a path: a text or a pathlib.Path")
+    return os.fspath(value)
+
+
+class NotCopied:
+    """What owns memory of the library: `copy` and `pickle` would give a second owner of it."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> Any:
+        raise TypeError(
+            f"a supple.{type(self).__name__} cannot be copied or pickled; make a new one from the same meshes "
+            "and options"
+        )
+
+
 def truth(value: Any, what: str) -> bool:
     """True or False, also of NumPy."""
     if not isinstance(value, (bool, np.bool_)):
@@ -171,6 +197,6 @@ def truth(value: Any, what: str) -> bool:
     return bool(value)
 
 
-def keywords(options: dict[str, Any]) -> dict[str, Any]:
+def keywords(options: Mapping[str, Any]) -> dict[str, Any]:
     """Options with the truth values of Python."""
     return {key: bool(value) if isinstance(value, np.bool_) else value for key, value in options.items()}

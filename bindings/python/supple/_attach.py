@@ -10,7 +10,7 @@ import os
 import sys
 import weakref
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _arrays
 from ._core import Error, Stop
@@ -18,8 +18,13 @@ from ._object import Object
 from ._scene import Scene
 from ._simulation import SimulatedObject, Simulation
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
-class View:
+    from .typing import AttachOptions, BreakOptions
+
+
+class View(_arrays.NotCopied):
     """The connection of a program to a page. `supple.attach` makes it; a `with` statement closes it."""
 
     def __init__(self, core: Any, shown: Scene | Simulation) -> None:
@@ -56,13 +61,15 @@ class View:
         """Whether the program waits, or will in its next step."""
         return bool(self._core.is_paused())
 
-    def set_breaks(self, *, objects: tuple[str, str] = ("", ""), **breaks: Any) -> None:
+    def set_breaks(self, *, objects: tuple[str, str] = ("", ""), **breaks: Unpack[BreakOptions]) -> None:
         """Sets the events that pause the program, instead of the present ones: `contact_begin`,
         `intersection`, `contacts_above`, `depth_above`, `not_finite`. `objects` are the names of those whose
         contacts begin; an empty name stands for any object."""
         self._core.set_breaks(breaks, objects)
 
-    def set_field(self, shown: Object | SimulatedObject, name: str, values: Any, *, of: str | None = None) -> None:
+    def set_field(
+        self, shown: Object | SimulatedObject, name: str, values: Any, *, of: str | None = None
+    ) -> None:
         """Shows your own numbers as the field `name`, which the page can choose: an array (n,) with one for
         each vertex of the object, (m,) with one for each triangle, or (n, 3) or (m, 3) with vectors, which
         the page draws as arrows. Frames from the next `detect` on have them, until they are set again. NaN is
@@ -101,7 +108,11 @@ class View:
 
 
 def attach(
-    shown: Scene | Simulation, *, open: bool = True, objects: tuple[str, str] = ("", ""), **options: Any
+    shown: Scene | Simulation,
+    *,
+    open: bool = True,
+    objects: tuple[str, str] = ("", ""),
+    **options: Unpack[AttachOptions],
 ) -> View:
     """Shows a scene or a simulation in a page while the program runs: from now on, each `detect` or `step`
     shows its result. The page can pause the program, take single steps, and set the events that pause it.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,15 +11,20 @@ from . import _arrays, _core
 from ._contracts import contract
 from ._core import Error
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
-class BroadPhase:
+    from .typing import BroadPhaseOptions
+
+
+class BroadPhase(_arrays.NotCopied):
     """Finds the overlapping pairs of volumes, for programs that have no meshes.
 
     Options are those of `supple.options("BroadPhaseOptions")` and `kind_pairs`, a list of pairs of kinds (0
     to 7). Volume i is the same object in every call.
     """
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(self, **options: Unpack[BroadPhaseOptions]) -> None:
         self._core = _core.BroadPhase(options)
 
     @contract(

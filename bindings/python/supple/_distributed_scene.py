@@ -8,7 +8,7 @@ import importlib
 import os
 import sys
 import weakref
-from typing import Any, Callable
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +21,19 @@ from ._meshes import arrays_of_object
 from ._object import Handle
 from ._result import Result
 from ._scene import SafeStep, VerifyReport
-from ._tables import Record, Table, record, table
+from ._tables import Table, record, table
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .typing import (
+        ContinuousContact,
+        DetectRequest,
+        FoundClosestPoint,
+        ObjectOptions,
+        ProximityPair,
+        SceneOptions,
+    )
 
 
 class DistributedObject(Handle):
@@ -49,7 +61,7 @@ class DistributedObject(Handle):
         return f"<supple.DistributedObject {self.index}>"
 
 
-class DistributedScene:
+class DistributedScene(_arrays.NotCopied):
     """One scene over all ranks of a communicator of mpi4py. Its results equal those of one `Scene`.
 
     Options are those of `Scene`, and three more: `results` says on which rank the contacts are
@@ -78,7 +90,7 @@ class DistributedScene:
         results: str | ResultPlacement = "gathered",
         cluster_triangles: int = 2048,
         max_imbalance: float = 1.25,
-        **options: Any,
+        **options: Unpack[SceneOptions],
     ) -> None:
         compiled = _compiled()
         self._communicator = _checked(communicator, compiled)
@@ -103,7 +115,7 @@ class DistributedScene:
         generation: int = 0,
         edges: Any = None,
         points: Any = None,
-        **options: Any,
+        **options: Unpack[ObjectOptions],
     ) -> DistributedObject:
         xyz, *others = arrays_of_object(mesh, triangles, edges, points, options)
         identifier = _identifier(id, generation)
@@ -124,7 +136,7 @@ part have in the whole object, both ascending.""",
         *,
         id: int,
         generation: int = 0,
-        **options: Any,
+        **options: Unpack[ObjectOptions],
     ) -> DistributedObject:
         identifier = _identifier(id, generation)
         self._core.add_part(
@@ -147,6 +159,7 @@ part have in the whole object, both ascending.""",
 must not call the scene. What it raises is an `Error` on all ranks.""",
     )
     def set_pair_filter(self, accepts: Callable[[DistributedObject, DistributedObject], bool] | None) -> None:
+        _arrays.function(accepts, "set_pair_filter: the filter", "two objects")
         if accepts is None:
             self._core.set_pair_filter(None)
             return
@@ -165,7 +178,7 @@ must not call the scene. What it raises is an `Error` on all ranks.""",
 column `vertices`, because a rank does not have the triangles of others. `stop` on one rank, or Ctrl-C, stops
 the call on all of them.""",
     )
-    def detect(self, *, stop: Stop | None = None, **request: Any) -> Result:
+    def detect(self, *, stop: Stop | None = None, **request: Unpack[DetectRequest]) -> Result:
         return Result(self._core.detect(request, stop), None)
 
     @contract(
@@ -176,7 +189,7 @@ the call on all of them.""",
         return VerifyReport(self._core.verify(stop), None)
 
     @contract("DistributedScene::earliest_impact")
-    def earliest_impact(self) -> Record | None:
+    def earliest_impact(self) -> ContinuousContact | None:
         return record(self._core.earliest_impact())
 
     @contract("DistributedScene::max_step")
@@ -189,9 +202,9 @@ the call on all of them.""",
         step, limit = self._core.collision_free_step(_arrays.number(keep, "keep"))
         return SafeStep(step, record(limit))
 
-    @contract("DistributedScene::distances")
-    def distances(self, max_distance: float) -> Table:
-        return table(self._core.distances(_arrays.number(max_distance, "max_distance")))
+    @contract("DistributedScene::distances", "`stop` on one rank, or Ctrl-C, stops the call on all of them.")
+    def distances(self, max_distance: float = np.inf, *, stop: Stop | None = None) -> Table[ProximityPair]:
+        return table(self._core.distances(_arrays.number(max_distance, "max_distance"), stop))
 
     @contract(
         "DistributedScene::closest",
@@ -205,7 +218,7 @@ object of any rank. The answer is a table with n rows; `found` says which have a
         max_distance: float = np.inf,
         object: Any = None,
         mask: int = 0xFFFFFFFF,
-    ) -> Table:
+    ) -> Table[FoundClosestPoint]:
         return table(
             self._core.closest(
                 self._together(lambda: _arrays.doubles(points, "points", -1, 3)),
@@ -217,11 +230,11 @@ object of any rank. The answer is a table with n rows; `found` says which have a
 
     @contract("DistributedScene::save")
     def save(self, path: str | os.PathLike[str]) -> None:
-        self._core.save(os.fspath(path))
+        self._core.save(_arrays.path(path, "save: the path"))
 
     @contract("DistributedScene::load")
     def load(self, path: str | os.PathLike[str]) -> None:
-        self._core.load(os.fspath(path))
+        self._core.load(_arrays.path(path, "load: the path"))
 
     @property
     def objects(self) -> list[DistributedObject]:

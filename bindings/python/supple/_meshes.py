@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
-from typing import Any, NamedTuple
+from typing import Any, Mapping, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -91,12 +91,13 @@ def _mesh(positions: Any, triangles: Any, name: str, edges: Any, points: Any) ->
 
 @contract("load_mesh")
 def load_mesh(path: str | os.PathLike[str]) -> Mesh:
-    return Mesh._of(_core.load_mesh(os.fspath(path)))
+    return Mesh._of(_core.load_mesh(_arrays.path(path, "load_mesh: the path")))
 
 
 @contract("save_mesh")
 def save_mesh(mesh: Any, path: str | os.PathLike[str]) -> None:
-    _core.save_mesh(as_mesh(mesh)._core, os.fspath(path))
+    name = _arrays.path(path, "save_mesh: the second argument, the path,")
+    _core.save_mesh(as_mesh(mesh)._core, name)
 
 
 @contract("model_names")
@@ -222,7 +223,7 @@ def arrays_of(mesh: Any, faces: Any = None) -> tuple[Any, Any, str, Any, Any]:
 
 
 def arrays_of_object(
-    mesh: Any, triangles: Any, edges: Any, points: Any, options: dict[str, Any]
+    mesh: Any, triangles: Any, edges: Any, points: Any, options: Mapping[str, Any]
 ) -> tuple[Any, Any, dict[str, Any], Any, Any]:
     """What the compiled modules take of an object: positions, which are converted by the caller, triangles,
     options, edges and points."""

@@ -146,8 +146,11 @@ class Object(Handle):
 
     @contract(
         "Scene::share_positions",
-        """The array stays in use until the object gets other positions or is
-removed. It must be an array whose memory the scene can read: an array that had to be copied is an error.""",
+        """The object keeps the array until it gets other positions or is removed. After you wrote to the
+array, call the function again. An `Error` is raised for what the package would have to convert before the scene
+sees it: lists, other types than float32 and float64, another byte order, coordinates that are not aligned, and
+memory of a device. Of an array in which x, y and z of a point are not adjacent, such as the transpose of (3, n),
+the scene makes its copy in each call, as said above.""",
     )
     def share_positions(self, positions: Any) -> None:
         array = _arrays.positions(positions)

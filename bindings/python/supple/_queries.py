@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterable, NamedTuple
+from typing import TYPE_CHECKING, Any, Iterable, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,10 @@ import numpy.typing as npt
 from . import _arrays
 from ._contracts import contract
 from ._core import Error, Stop
-from ._tables import Record, Table, record, table
+from ._tables import Table, record, table
+
+if TYPE_CHECKING:
+    from .typing import FoundClosestPoint, FoundRayHit, ListedRayHit, Overlap, ProximityPair
 
 
 class WrongAnswer(NamedTuple):
@@ -49,7 +52,7 @@ class Queries:
         object: Any = None,
         mask: int = 0xFFFFFFFF,
         stop: Stop | None = None,
-    ) -> Table:
+    ) -> Table[FoundClosestPoint]:
         return self._query(
             self._core.closest(
                 _arrays.doubles(points, "points", -1, 3),
@@ -75,7 +78,7 @@ class Queries:
         object: Any = None,
         mask: int = 0xFFFFFFFF,
         stop: Stop | None = None,
-    ) -> Table:
+    ) -> Table[FoundRayHit]:
         return self._query(
             self._core.cast(
                 _rows(origins, directions, "origins", "directions"),
@@ -95,7 +98,7 @@ class Queries:
         object: Any = None,
         mask: int = 0xFFFFFFFF,
         stop: Stop | None = None,
-    ) -> Table:
+    ) -> Table[ListedRayHit]:
         return self._query(
             self._core.cast_all(
                 _rows(origins, directions, "origins", "directions"),
@@ -114,7 +117,7 @@ class Queries:
         object: Any = None,
         mask: int = 0xFFFFFFFF,
         stop: Stop | None = None,
-    ) -> Table:
+    ) -> Table[Overlap]:
         return self._query(
             self._core.overlaps_boxes(
                 _rows(lowest, highest, "lowest", "highest"),
@@ -133,7 +136,7 @@ class Queries:
         object: Any = None,
         mask: int = 0xFFFFFFFF,
         stop: Stop | None = None,
-    ) -> Table:
+    ) -> Table[Overlap]:
         return self._query(
             self._core.overlaps_spheres(
                 _spheres(centers, radii), self._filter(object), _arrays.count(mask, "mask"), stop
@@ -158,11 +161,11 @@ class Queries:
         )
 
     @contract("Scene::distance")
-    def distance(self, a: Any, b: Any, *, stop: Stop | None = None) -> Record | None:
+    def distance(self, a: Any, b: Any, *, stop: Stop | None = None) -> ProximityPair | None:
         return record(self._core.distance(self._id(a), self._id(b), stop), self._core)
 
     @contract("Scene::distances")
-    def distances(self, max_distance: float = np.inf, *, stop: Stop | None = None) -> Table:
+    def distances(self, max_distance: float = np.inf, *, stop: Stop | None = None) -> Table[ProximityPair]:
         return self._query(self._core.distances(max_distance, stop))
 
     @contract("Scene::any_contact")
@@ -264,7 +267,7 @@ class Queries:
         )
 
     @contract("Scene::verify_distance")
-    def verify_distance(self, a: Any, b: Any, found: Record | None) -> list[WrongAnswer]:
+    def verify_distance(self, a: Any, b: Any, found: ProximityPair | None) -> list[WrongAnswer]:
         rows = np.empty(0, np.uint8) if found is None else _bytes(found._row)
         return _wrong(self._core.verify_distance(self._id(a), self._id(b), rows))
 

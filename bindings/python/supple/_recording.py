@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Iterator, overload
+from typing import TYPE_CHECKING, Any, Iterator, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,9 @@ from ._scene import Scene
 from ._simulation import Simulation
 from ._tables import table
 
+if TYPE_CHECKING:
+    from .typing import StepStats
+
 
 class Frame(_Lists):
     """One frame of a recording: `time`, `stats`, `positions` and the lists of a `Result` but for groups."""
@@ -24,7 +27,7 @@ class Frame(_Lists):
     def __init__(self, recording: Recording, number: int, facts: dict[str, Any]) -> None:
         self.number = number
         self.time: float = facts["time"]
-        self.stats: dict[str, Any] = dict(facts["stats"])
+        self.stats: StepStats = facts["stats"]
         self._recording = recording
         self._tables = {name: table(raw, recording._elements) for name, raw in facts["tables"].items()}
 
@@ -86,7 +89,7 @@ class Recording:
     """A recording as a sequence of frames: `recording[3].contacts`, `for frame in recording`."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = os.fspath(path)
+        self.path = _arrays.path(path, "open: the path")
         self._core = _core.Recording(self.path)
         self.objects = [RecordedObject(*each) for each in self._core.objects()]
         self._elements = _Elements(self.objects)
@@ -138,7 +141,7 @@ def open(path: str | os.PathLike[str]) -> Recording:  # noqa: A001
     return Recording(path)
 
 
-class Recorder:
+class Recorder(_arrays.NotCopied):
     """Writes the steps of a scene or a simulation, whose objects stay the same, as a recording.
 
     with supple.record("run.h5", simulation) as recorder:
@@ -149,6 +152,7 @@ class Recorder:
     def __init__(
         self, path: str | os.PathLike[str], source: Scene | Simulation, time_step: float = 0.01
     ) -> None:
+        name = _arrays.path(path, "record: the first argument, the path,")
         self._source = source
         self._objects: list[Any] = list(source.objects)
         self._time_step = source.time_step if isinstance(source, Simulation) else time_step
@@ -161,7 +165,7 @@ class Recorder:
                 else Mesh(each.positions, each.triangles, name=each.name)
             )
             described.append((each._id, mesh._core, {"name": each.name}))
-        self._core = _core.Recorder(os.fspath(path), described, self._time_step)
+        self._core = _core.Recorder(name, described, self._time_step)
 
     @contract(
         "Recorder::add",

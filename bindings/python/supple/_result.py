@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Collection, Iterator, NamedTuple
+from typing import TYPE_CHECKING, Any, Collection, Iterator, NamedTuple
 
 from . import _core
 from ._core import Error
 from ._tables import Table, dtypes, table
+
+if TYPE_CHECKING:
+    from .typing import Contact, ContinuousContact, ObjectPair, ProximityPair, ResultLists, StepStats
+else:
+    ResultLists = object
 
 #: Short names of lists.
 SHORT = {
@@ -25,12 +30,12 @@ class PairContacts(NamedTuple):
 
     object_a: int
     object_b: int
-    contacts: Table
-    continuous_contacts: Table
-    proximity_pairs: Table
+    contacts: Table[Contact]
+    continuous_contacts: Table[ContinuousContact]
+    proximity_pairs: Table[ProximityPair]
 
 
-class _Lists:
+class _Lists(ResultLists):
     """Lists by name: of a result, or of a frame of a recording."""
 
     def _list(self, name: str) -> Any:
@@ -39,19 +44,21 @@ class _Lists:
     def _names(self) -> Collection[str]:
         raise NotImplementedError
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        found = SHORT.get(name, name)
-        if found not in self._names():
-            raise AttributeError(f"there is no list '{name}'; there are {', '.join(self._names())}")
-        return self._list(found)
+    if not TYPE_CHECKING:  # which knows the lists
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            found = SHORT.get(name, name)
+            if found not in self._names():
+                raise AttributeError(f"there is no list '{name}'; there are {', '.join(self._names())}")
+            return self._list(found)
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *(name for name in self._names() if "/" not in name), *SHORT]
 
     @property
-    def events(self) -> dict[str, Table]:
+    def events(self) -> dict[str, Table[ObjectPair]]:
         """Pairs of objects that begin, stay and end, by `volume_begin`, `contact_end` and so on."""
         return {name.split("/")[1]: self._list(name) for name in self._names() if "/" in name}
 
@@ -143,9 +150,9 @@ class Result(_Lists):
         return bool(self._core.stopped)
 
     @property
-    def stats(self) -> dict[str, Any]:
+    def stats(self) -> StepStats:
         """Seconds and counts of the stages."""
-        return dict(self._core.stats())
+        return self._core.stats()
 
     @property
     def untested(self) -> dict[str, str]:
@@ -183,7 +190,14 @@ class Result(_Lists):
 
 
 class SavedResult(_Lists):
-    """A result that was pickled, or that a search returned: its lists are copies."""
+    """A result that was pickled, or that a search returned: its lists are copies. That of a search has no
+    `step`, `stats` and `untested`."""
+
+    step: int
+    truncated: bool
+    stopped: bool
+    stats: StepStats
+    untested: dict[str, str]
 
     def __init__(self, lists: dict[str, Any], facts: dict[str, Any]) -> None:
         self._saved = lists

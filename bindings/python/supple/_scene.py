@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import weakref
-from typing import Any, Callable, Iterator, Mapping, NamedTuple
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, NamedTuple
 
 import numpy as np
 
@@ -15,14 +15,19 @@ from ._meshes import arrays_of_object
 from ._object import Object
 from ._queries import Queries
 from ._result import Result, SavedResult
-from ._tables import Record, record, table
+from ._tables import record, table
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .typing import ContinuousContact, DetectRequest, LimitingPair, ObjectOptions, SceneOptions
 
 
 class SafeStep(NamedTuple):
     """The safe part of a step, 0 to 1, and the pair that ends it; None for the whole step."""
 
     step: float
-    limit: Record | None
+    limit: LimitingPair | None
 
 
 class ObjectStep(NamedTuple):
@@ -31,7 +36,7 @@ class ObjectStep(NamedTuple):
     object: Object
     island: Object
     step: float
-    limit: Record | None
+    limit: LimitingPair | None
 
 
 class VerifyReport:
@@ -62,7 +67,7 @@ class VerifyReport:
 PairFilter = Callable[[Object, Object], bool]
 
 
-class Scene(Queries):
+class Scene(Queries, _arrays.NotCopied):
     """Deforming objects and all contacts between them.
 
     Options are keywords; `supple.options("SceneOptions")` lists all with their values and defaults.
@@ -81,7 +86,7 @@ class Scene(Queries):
 
     __slots__ = ("_core", "_objects", "_result", "_no_result", "__weakref__")
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(self, **options: Unpack[SceneOptions]) -> None:
         self._core = _core.Scene(_arrays.keywords(options))
         self._objects: dict[int, Object] = {}
         self._result = self._no_result = Result(_core.Result(), self._core)
@@ -94,7 +99,7 @@ class Scene(Queries):
         edges: Any = None,
         points: Any = None,
         same_vertex: Any = None,
-        **options: Any,
+        **options: Unpack[ObjectOptions],
     ) -> Object:
         """Adds an object and builds its octree, O(n log n), without the GIL.
 
@@ -105,10 +110,10 @@ class Scene(Queries):
         strides that they have. Copied once are arrays that are not aligned, not in the byte order of the
         machine, or not of float32, float64, int32, int64, uint16 or uint32.
         """
-        xyz, faces, options, edges, points = arrays_of_object(mesh, triangles, edges, points, options)
+        xyz, faces, keywords, edges, points = arrays_of_object(mesh, triangles, edges, points, options)
         if same_vertex is not None:
             same_vertex = _arrays.ids(same_vertex, "same_vertex")
-        identifier = self._core.add(_arrays.positions(xyz), faces, options, same_vertex, edges, points)
+        identifier = self._core.add(_arrays.positions(xyz), faces, keywords, same_vertex, edges, points)
         added = Object(self, identifier)
         self._objects[added.index] = added
         return added
@@ -143,9 +148,9 @@ GIL, for each pair of objects whose volumes overlap, so it is slow: prefer `grou
 groups, which run without it. It must not call the scene. What it raises ends the call of the scene.""",
     )
     def set_pair_filter(self, accepts: PairFilter | None) -> None:
-        self._core.set_pair_filter(self._wrapped(accepts))
+        self._core.set_pair_filter(self._wrapped(accepts, "set_pair_filter: the filter"))
 
-    def detect(self, *, stop: Stop | None = None, **request: Any) -> Result:
+    def detect(self, *, stop: Stop | None = None, **request: Unpack[DetectRequest]) -> Result:
         """Finds all contacts.
 
         Options of the scene can have other values for this call: `contacts`, those of continuous contacts
@@ -160,9 +165,9 @@ groups, which run without it. It must not call the scene. What it raises ends th
 
     @contract("Scene::search", "Its lists are copies.")
     def search(
-        self, *, only: PairFilter | None = None, stop: Stop | None = None, **request: Any
+        self, *, only: PairFilter | None = None, stop: Stop | None = None, **request: Unpack[DetectRequest]
     ) -> SavedResult:
-        found = self._core.search(request, self._wrapped(only), stop)
+        found = self._core.search(request, self._wrapped(only, "search: only"), stop)
         lists = {name: table(raw, self._core) for name, raw in found.items() if isinstance(raw, tuple)}
         return SavedResult(lists, {"stopped": found["stopped"], "truncated": found["truncated"]})
 
@@ -176,7 +181,7 @@ groups, which run without it. It must not call the scene. What it raises ends th
         return VerifyReport(self._core.verify(stop), self._core)
 
     @contract("Scene::earliest_impact")
-    def earliest_impact(self) -> Record | None:
+    def earliest_impact(self) -> ContinuousContact | None:
         return record(self._core.earliest_impact(), self._core)
 
     @contract("Scene::max_step")
@@ -264,7 +269,8 @@ groups, which run without it. It must not call the scene. What it raises ends th
     def _object(self, identifier: Any) -> Object:
         return self._objects[int(identifier.index)]
 
-    def _wrapped(self, accepts: PairFilter | None) -> Any:
+    def _wrapped(self, accepts: PairFilter | None, what: str) -> Any:
+        _arrays.function(accepts, what, "two objects")
         if accepts is None:
             return None
         # The scene keeps the function, so the function must not keep the scene.

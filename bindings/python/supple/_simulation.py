@@ -3,7 +3,7 @@ collisions."""
 
 from __future__ import annotations
 
-from typing import Any, Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,20 @@ from ._core import Error, Stop
 from ._meshes import Mesh, as_mesh
 from ._result import Result
 from ._scene import Scene
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .typing import (
+        ContactResponse,
+        DetectRequest,
+        MassSpringMotion,
+        MassSpringMotionHandle,
+        MassSpringOptions,
+        ObjectOptions,
+        RigidMotion,
+        SimulationOptions,
+    )
 
 Motion = Callable[[float, npt.NDArray[np.float64]], Any]
 
@@ -60,7 +74,7 @@ class SimulatedObject:
         return f"<supple.SimulatedObject {self.index} {self.name!r}: {len(self.mesh.positions)} vertices>"
 
 
-class Simulation:
+class Simulation(_arrays.NotCopied):
     """Moves objects by their own motion, step by step, and finds the collisions between them.
 
     Options are keywords; `supple.options("SimulationOptions")` lists them, with those of the scene:
@@ -75,7 +89,7 @@ class Simulation:
 
     __slots__ = ("_core", "_objects", "_result", "_no_result", "__weakref__")
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(self, **options: Unpack[SimulationOptions]) -> None:
         if options.get("border") is not None:
             options["border"] = _arrays.doubles(options["border"], "the border", 2, 3)
         self._core = _core.Simulation(_arrays.keywords(options))
@@ -87,12 +101,12 @@ class Simulation:
         mesh: Any,
         triangles: Any = None,
         *,
-        springs: Mapping[str, Any] | None = None,
-        rigid: Mapping[str, Any] | None = None,
+        springs: MassSpringMotion | None = None,
+        rigid: RigidMotion | None = None,
         motion: Motion | None = None,
         fixed_vertices: Any = None,
-        handles: Any = (),
-        **options: Any,
+        handles: Iterable[tuple[Any, MassSpringMotionHandle]] = (),
+        **options: Unpack[ObjectOptions],
     ) -> SimulatedObject:
         """Adds an object with at most one motion.
 
@@ -102,16 +116,18 @@ class Simulation:
         `supple.options("RigidMotion")`. `motion`: a function of (seconds, positions) that changes the array
         or returns a new one; it is called with the GIL once per step. `options` are those of `Scene.add`.
         """
+        _arrays.function(motion, "add: motion", "seconds and positions")
         if sum(each is not None for each in (springs, rigid, motion)) > 1:
             raise Error("add: an object has one motion: springs, rigid or motion")
-        if springs is None and (fixed_vertices is not None or len(handles)):
+        pulled = list(handles)
+        if springs is None and (fixed_vertices is not None or pulled):
             raise Error("add: fixed_vertices and handles need springs")
         for given, chosen in (("springs", springs), ("rigid", rigid)):
             if chosen is not None and not isinstance(chosen, Mapping):
                 raise Error(f"add: {given} is {chosen!r}; it must be a dict of options")
         made = as_mesh(mesh, triangles)
-        options = _arrays.keywords(options)
-        options.setdefault("name", made.name)
+        keywords = _arrays.keywords(options)
+        keywords.setdefault("name", made.name)
         kind, value = next(
             (
                 (kind, dict(value) if isinstance(value, Mapping) else value)
@@ -121,17 +137,17 @@ class Simulation:
             ("", None),
         )
         moved = [
-            (_arrays.ids(vertices, "vertices of the handle").tolist(), dict(how)) for vertices, how in handles
+            (_arrays.ids(vertices, "vertices of the handle").tolist(), dict(how)) for vertices, how in pulled
         ]
         identifier = self._core.add(
             made._core,
-            options,
+            keywords,
             kind,
             value,
             None if fixed_vertices is None else _arrays.ids(fixed_vertices, "fixed_vertices"),
             moved,
         )
-        added = SimulatedObject(self, identifier, made, options)
+        added = SimulatedObject(self, identifier, made, keywords)
         self._objects[added.index] = added
         return added
 
@@ -141,18 +157,20 @@ class Simulation:
         del self._objects[removed.index]
 
     @contract("Simulation::detect")
-    def detect(self, *, stop: Stop | None = None, **request: Any) -> Result:
+    def detect(self, *, stop: Stop | None = None, **request: Unpack[DetectRequest]) -> Result:
         self._result = self._no_result
         self._result = Result(self._core.detect(request, stop), self._core)
         return self._result
 
     @contract("Simulation::step")
-    def step(self, *, stop: Stop | None = None, **request: Any) -> Result:
+    def step(self, *, stop: Stop | None = None, **request: Unpack[DetectRequest]) -> Result:
         self._result = self._no_result
         self._result = Result(self._core.step(request, stop), self._core)
         return self._result
 
-    def run(self, steps: int, *, progress: bool = False, **request: Any) -> Iterator[Result]:
+    def run(
+        self, steps: int, *, progress: bool = False, **request: Unpack[DetectRequest]
+    ) -> Iterator[Result]:
         """Takes `steps` steps and gives the result of each. `progress` shows a bar, which needs tqdm."""
         numbers: Any = range(_arrays.count(steps, "steps"))
         if progress:
@@ -202,14 +220,19 @@ class Simulation:
         return f"<supple.Simulation: {len(self)} objects, {self.step_count} steps of {self.time_step:g} s>"
 
 
-class MassSpringBody:
+class MassSpringBody(_arrays.NotCopied):
     """A mesh as masses at its vertices and springs on its edges, without collisions.
 
     Options are keywords; `supple.options("MassSpringOptions")` lists them. SI units.
     """
 
     def __init__(
-        self, mesh: Any, triangles: Any = None, *, fixed_vertices: Any = None, **options: Any
+        self,
+        mesh: Any,
+        triangles: Any = None,
+        *,
+        fixed_vertices: Any = None,
+        **options: Unpack[MassSpringOptions],
     ) -> None:
         self._core = _core.MassSpringBody(
             as_mesh(mesh, triangles)._core,
@@ -330,7 +353,12 @@ class MassSpringBody:
     "None: all are infinite. `supple.options('ContactResponse')` lists the options.",
 )
 def respond(
-    scene: Scene, body: Any, velocities: npt.NDArray[np.float64], masses: Any, dt: float, **options: Any
+    scene: Scene,
+    body: Any,
+    velocities: npt.NDArray[np.float64],
+    masses: Any,
+    dt: float,
+    **options: Unpack[ContactResponse],
 ) -> float:
     if not (
         isinstance(velocities, np.ndarray)

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import html
-from typing import Any, Iterator
+from typing import TYPE_CHECKING, Any, Generic, Iterator, SupportsIndex, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._core import Error
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar
+
+    Row = TypeVar("Row", bound="Record", covariant=True, default="Record")
+else:
+    from typing import TypeVar
+
+    Row = TypeVar("Row")
 
 
 def _dtype(layout: tuple[int, list[Any]]) -> np.dtype[Any]:
@@ -41,24 +50,27 @@ _SIDES = ("barycentric", "element", "object", "point", "triangle", "kind", "feat
 
 
 class Record:
-    """One row of a table; its columns are attributes: `contact.normal`, `pair.vertices`."""
+    """One row of a table; its columns are attributes: `contact.normal`, `pair.vertices`. `supple.typing` has
+    the columns of each record for annotations."""
 
     __slots__ = ("_row",)
 
     def __init__(self, row: Table) -> None:
         self._row = row
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):
-            raise AttributeError(name)
-        try:
-            value = self._row[name][0]
-        except (KeyError, ValueError):
-            raise AttributeError(
-                f"a {self._row.record} has no '{name}'; it has {', '.join(self._row.columns)}"
-            ) from None
-        words = _words.get(self._row.record, {}).get(name)
-        return words[int(value)] if words else value
+    if not TYPE_CHECKING:  # which knows the columns of each record
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("__"):
+                raise AttributeError(name)
+            try:
+                value = self._row[name][0]
+            except (KeyError, ValueError):
+                raise AttributeError(
+                    f"a {self._row.record} has no '{name}'; it has {', '.join(self._row.columns)}"
+                ) from None
+            words = _words.get(self._row.record, {}).get(name)
+            return words[int(value)] if words else value
 
     def __getitem__(self, name: str) -> Any:
         return getattr(self, name)
@@ -86,7 +98,7 @@ class Record:
         return f"{self._row.record}({', '.join(f'{name}={_text(getattr(self, name))}' for name in names)})"
 
 
-class Table(np.ndarray):
+class Table(np.ndarray, Generic[Row]):
     """A list of records: a structured array of NumPy without a copy, read-only, valid as long as it is held.
 
     `table["distance"]` is a column without a copy. Further columns are made from these: `vertices`, the
@@ -110,6 +122,15 @@ class Table(np.ndarray):
         names = list(self.dtype.names or ())
         names += [name for name in _SIDES if f"{name}_a" in names and f"{name}_b" in names]
         return names + (["vertices"] if self.record in _WITH_VERTICES else [])
+
+    @overload  # type: ignore[override]
+    def __getitem__(self, key: str) -> npt.NDArray[Any]: ...
+
+    @overload
+    def __getitem__(self, key: slice | npt.NDArray[Any] | list[int] | list[bool]) -> Table[Row]: ...  # type: ignore[overload-overlap]
+
+    @overload
+    def __getitem__(self, key: SupportsIndex) -> Row: ...
 
     def __getitem__(self, key: Any) -> Any:
         if not isinstance(key, str):
@@ -167,7 +188,7 @@ class Table(np.ndarray):
         """What each column is, and its unit."""
         return dict(_fields.get(self.record, {}))
 
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[Row]:  # type: ignore[override]
         return (self[i] for i in range(len(self)))
 
     def __reduce__(self) -> Any:
@@ -243,6 +264,6 @@ def table(raw: tuple[str | None, npt.NDArray[Any]], scene: Any = None) -> Any:
     return made
 
 
-def record(raw: tuple[str | None, npt.NDArray[Any]] | None, scene: Any = None) -> Record | None:
+def record(raw: tuple[str | None, npt.NDArray[Any]] | None, scene: Any = None) -> Any:
     """The only row of a table, or None."""
     return None if raw is None else Record(table(raw, scene))

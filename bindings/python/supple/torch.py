@@ -8,6 +8,13 @@ times the number of pairs; so the value is continuous and its gradient is not), 
 become the nearest.
 
 Tensors may be float32 or float64, on any device: positions are copied to the host for the detection.
+
+A loss is NaN where a coordinate is not finite, and so is its gradient at this coordinate: triangles of such a
+vertex touch nothing, and an optimizer that blew up must not look like one that has finished.
+
+The losses have a gradient only at vertices of pairs, and know nothing of the rest of a shape. Where each vertex
+is free, single vertices move, the surface crumples, and contacts can become more: optimize the parameters of a
+pose or a deformation, or add a term that keeps the shape, such as the squared changes of edge lengths.
 """
 
 from __future__ import annotations
@@ -116,15 +123,14 @@ class Pairs:
             scene = self._scenes[place]
             for each, positions in zip(scene.objects, arrays):
                 each.positions = positions
-        return loss(scene.detect(contacts=contacts), meshes)
+        found: Tensor = loss(scene.detect(contacts=contacts), meshes)
+        return found if all(np.isfinite(each).all() for each in arrays) else found + _nan(meshes)
 
     def _proximity(self, found: Any, meshes: tuple[Tensor, ...]) -> Tensor:
+        if not self._margin > 0:
+            return _zero(meshes)
         distances = _distances(found.proximity_pairs, meshes)
-        return (
-            (_torch.clamp(1 - distances / self._margin, min=0) ** 2).sum()
-            if self._margin > 0
-            else _zero(meshes)
-        )
+        return (_torch.clamp(1 - distances / self._margin, min=0) ** 2).sum()
 
     def _penetration(self, found: Any, meshes: tuple[Tensor, ...]) -> Tensor:
         deep = found.penetrations
@@ -165,6 +171,11 @@ class Pairs:
 
 def _zero(meshes: tuple[Tensor, ...]) -> Tensor:
     return sum(0 * each.sum() for each in meshes)  # type: ignore[return-value, unused-ignore]
+
+
+def _nan(meshes: tuple[Tensor, ...]) -> Tensor:
+    """NaN, whose gradient is NaN at the coordinates that are not finite and 0 at the others."""
+    return sum(0 * (each * each).sum() for each in meshes)  # type: ignore[return-value, unused-ignore]
 
 
 def _index(ids: Any, like: Tensor) -> Tensor:

@@ -1,10 +1,12 @@
 """Run by mpirun: the distributed scene finds what one scene finds. Each function is a test of all ranks."""
 
 import functools
+import gc
 import pathlib
 import shutil
 import tempfile
 import threading
+import weakref
 
 import numpy as np
 from mpi4py import MPI
@@ -167,6 +169,11 @@ def random_scenes():
                     assert_equal(result._list(name), wanted._list(name), name)
                 found += len(result)
                 last.append((result, {name: result._list(name).tobytes() for name in result._names()}))
+                if step == 0:  # neither has events or ids of earlier steps
+                    assert all(
+                        result._list(name).tobytes() == wanted._list(name).tobytes()
+                        for name in wanted._names()
+                    ), "bytes between the columns"
             else:
                 assert len(result) == 0 and len(result.events["volume_begin"]) == 0
             report = distributed.verify()
@@ -181,9 +188,10 @@ def random_scenes():
                 step_, limit = getattr(distributed, name)()
                 assert step_ == getattr(one, name)().step, name
                 assert_same_record(limit, getattr(one, name)().limit)
-            distances = distributed.distances(0.5)
-            if WORLD.rank == 0:
-                assert_equal(distances, one.distances(0.5), "distances")
+            for most in (0.5,), ():
+                distances = distributed.distances(*most)
+                if WORLD.rank == 0:
+                    assert_equal(distances, one.distances(*most), "distances")
             if step == 2 and seed % 2 == 0:
                 distributed.save(file)
                 distributed = supple.DistributedScene(WORLD, threads=1, **options)
@@ -351,8 +359,50 @@ def a_stop_on_one_rank_stops_all():
     if WORLD.rank == WORLD.size - 1:
         stop.request()
     assert scene.detect(stop=stop).stopped
+    expect_on_all(
+        f"rank {WORLD.size - 1}: distances: it was stopped, so there is no answer",
+        lambda: scene.distances(1, stop=stop),
+    )
     result = scene.detect()
     assert not result.stopped and result.step == 0
+
+
+def other_calls_on_one_rank():
+    """They are an error on all ranks, which says what differs; before, the answers were partial."""
+    if WORLD.size == 1:
+        return
+    last = WORLD.size - 1
+    is_last = WORLD.rank == last
+    scene = supple.DistributedScene(WORLD, threads=1 + is_last)
+    mesh = supple.make_icosphere(3)
+    scene.add(mesh, id=WORLD.rank)
+    for call, difference in (
+        (lambda: scene.detect(contacts="proximity" if is_last else "intersection"), "contacts is proximity"),
+        (lambda: scene.distances(2 if is_last else 1), "max_distance is 2"),
+        (lambda: scene.closest([[0, 0, 0]], mask=1 + is_last), "mask is 2"),
+        (lambda: scene.max_step() if is_last else scene.detect(), "call is earliest_impact"),
+        (lambda: supple.DistributedScene(WORLD, cluster_triangles=100 + is_last), "cluster_triangles is 101"),
+    ):
+        expect_on_all(f"; on rank {last}, {difference}; give all ranks the same", call)
+    expect_on_all("", scene.detect)
+
+
+def a_filter_that_reaches_its_scene_is_freed():
+    class Owner:
+        def __init__(self):
+            self.scene = supple.DistributedScene(WORLD, threads=1)
+            self.scene.set_pair_filter(self.accepts)
+
+        def accepts(self, a, b):
+            return True
+
+    owner = Owner()
+    owner.scene.detect()
+    expect("it must be a function of two objects", lambda: owner.scene.set_pair_filter(3))
+    alive = weakref.ref(owner)
+    del owner
+    gc.collect()
+    assert alive() is None
 
 
 def calls_release_the_gil():
@@ -384,6 +434,8 @@ if __name__ == "__main__":
         wrong_input,
         other_communicators,
         a_stop_on_one_rank_stops_all,
+        other_calls_on_one_rank,
+        a_filter_that_reaches_its_scene_is_freed,
         calls_release_the_gil,
     ):
         test()

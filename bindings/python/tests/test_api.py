@@ -3,6 +3,8 @@
 import importlib.util
 import inspect
 import json
+import subprocess
+import sys
 
 from conftest import ROOT
 from supple._contracts import twins
@@ -380,3 +382,29 @@ def test_enumerations_have_the_words_of_cpp():
     assert options["broad_phase"].split(", ") == [each.name for each in supple.BroadPhaseMethod]
     contacts = supple.Scene().result.contacts
     assert contacts.words("kind").size == 0 and len(supple.IntersectionKind) == 3
+
+
+def test_modules_are_loaded_when_they_are_used():
+    """As the pages write it: `import supple`, then `supple.plot`."""
+    program = """
+import sys, supple
+before = {name for name in sys.modules if name.startswith("supple.")}
+assert not {"supple.compat", "supple.plot", "supple.torch", "supple.typing", "matplotlib", "torch"} & sys.modules.keys()
+assert supple.plot.counts and supple.compat.trimesh.CollisionManager and supple.compat.ipctk.CollisionMesh
+assert supple.typing.SceneOptions and "numpy" in sys.modules and "torch" not in sys.modules
+try:
+    supple.plots
+except AttributeError as error:
+    assert "plots" in str(error)
+else:
+    raise AssertionError
+assert not hasattr(supple.compat, "fcl")
+try:
+    import torch
+except ImportError:
+    pass
+else:
+    assert supple.torch.proximity_loss
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

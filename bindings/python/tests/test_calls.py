@@ -1,7 +1,9 @@
 """Calls from threads, their stop by Ctrl-C and from other threads, fork, and the end of the interpreter."""
 
+import copy
 import gc
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -209,3 +211,105 @@ time.sleep(0.2)
             [sys.executable, "-c", program], capture_output=True, text=True, timeout=600, check=False
         )
         assert done.returncode == 0 and "terminate" not in done.stderr, done.stderr
+
+
+class Tracked(np.ndarray):
+    """An array with attributes, as other packages have them."""
+
+
+class Owner:
+    """A program that its scene can reach: by its filter, by an array that the scene reads, or by a motion."""
+
+    def __init__(self, way, sphere):
+        self.big = np.zeros(1000)
+        if way == "motion":
+            self.scene = supple.Simulation()
+            self.scene.add(sphere, motion=self.move)
+            self.scene.add(supple.make_box(), motion=lambda seconds, x: self.move(seconds, x))
+            self.scene.step()
+            return
+        self.scene = supple.Scene()
+        ball = self.scene.add(sphere)
+        self.scene.add(supple.make_box())
+        if way == "filter":
+            self.scene.set_pair_filter(self.accepts)
+        elif way == "closure":
+            self.scene.set_pair_filter(lambda a, b: a in self.scene and self.accepts(a, b))
+        else:
+            positions = np.array(sphere.positions).view(Tracked)
+            positions.owner = self
+            ball.share_positions(positions)
+        self.result = self.scene.detect()
+        self.pairs = self.result.object_pairs
+
+    def accepts(self, a, b):
+        return len(self.big) > 0
+
+    def move(self, seconds, positions):
+        positions += 0.001 * len(self.big)
+
+
+@pytest.mark.parametrize("way", ["filter", "closure", "array", "motion"])
+def test_what_a_scene_can_reach_is_freed_with_it(way, sphere):
+    owners = [Owner(way, sphere) for _ in range(3)]
+    gc.collect()
+    for each in owners:  # while they are held, functions and arrays stay
+        assert each.scene.detect() is not None
+    alive = [weakref.ref(each) for each in owners] + [weakref.ref(each.scene) for each in owners]
+    del owners, each
+    gc.collect()
+    assert not any(reference() is not None for reference in alive)
+
+
+def test_a_filter_or_motion_that_was_replaced_is_freed(sphere):
+    def filters():
+        return lambda a, b: True
+
+    scene, first = supple.Scene(), filters()
+    scene.set_pair_filter(first)
+    alive = weakref.ref(first)
+    del first
+    gc.collect()
+    assert alive() is not None
+    scene.set_pair_filter(None)
+    assert alive() is None
+    simulation, motion = supple.Simulation(), filters()
+    body = simulation.add(sphere, motion=lambda seconds, x, kept=motion: None)
+    alive = weakref.ref(motion)
+    del motion
+    gc.collect()
+    assert alive() is not None
+    simulation.remove(body)
+    gc.collect()
+    assert alive() is None
+
+
+def test_callbacks_are_functions(sphere):
+    scene, simulation = supple.Scene(), supple.Simulation()
+    for call in (
+        lambda: scene.set_pair_filter(3),
+        lambda: scene.search(only="all"),
+        lambda: simulation.add(sphere, motion=(1, 2, 3)),
+    ):
+        with pytest.raises(TypeError, match="it must be a function of .*, or None"):
+            call()
+
+
+def test_what_owns_memory_is_not_copied(sphere, tmp_path):
+    scene, a, _ = two_spheres(sphere)
+    owners = [
+        scene,
+        supple.Simulation(),
+        supple.BroadPhase(),
+        supple.MassSpringBody(sphere),
+        supple.record(tmp_path / "run.h5", scene),
+    ]
+    for each in owners:
+        for make in (copy.copy, copy.deepcopy, pickle.dumps):
+            with pytest.raises(
+                TypeError, match=f"a supple.{type(each).__name__} cannot be copied or pickled; make"
+            ):
+                make(each)
+    with pytest.raises(TypeError, match="a supple.Scene cannot be copied"):
+        copy.deepcopy(a)
+    assert copy.copy(a) == a

@@ -1,5 +1,7 @@
 """The calls of other libraries, and the check of animations."""
 
+import gc
+
 import numpy as np
 import pytest
 from supple.compat.ipctk import CollisionMesh
@@ -59,6 +61,162 @@ def test_collision_manager(at):
     assert manager.in_collision_internal() and len(objects) == 2
 
 
+def plain_answers(a, b):
+    """Whether two placed meshes collide, and their distance, by a scene of their own."""
+    scene = supple.Scene(contacts="intersection", threads=1)
+    objects = []
+    for mesh, matrix in (a, b):
+        solid = not supple.fault_of_solid(mesh)
+        objects.append(scene.add(mesh, solid=solid))
+        objects[-1].set_transform(matrix)
+    touch = scene.any_contact(*objects)
+    inside = scene.search(contacts="penetration").contained_parts
+    return touch or len(inside) > 0, scene.distance(*objects).distance
+
+
+def test_managers_answer_as_if_they_were_new(rng):
+    """Objects come, go and move; meshes of single questions change in place; bodies contain each other."""
+    trimesh = pytest.importorskip("trimesh")
+    from supple.compat.trimesh import CollisionManager
+
+    def shape():
+        kind = rng.integers(5)
+        if kind == 0:
+            two = [trimesh.creation.icosphere(1, 0.2), trimesh.creation.box((0.3, 0.3, 0.3))]
+            return trimesh.util.concatenate([two[0], two[1].apply_translation([1.5, 0, 0])])
+        made = [
+            trimesh.creation.torus(0.6, 0.2, 12, 8),
+            trimesh.creation.box(rng.uniform(0.2, 2, 3)),
+            trimesh.creation.icosphere(2, rng.uniform(0.1, 1)),
+            trimesh.Trimesh(
+                *(lambda box: (box.vertices, box.faces[:-1]))(trimesh.creation.box()), process=False
+            ),
+        ]
+        return made[kind - 1]
+
+    def placed():
+        matrix = trimesh.transformations.random_rotation_matrix(rng.random(3))
+        matrix[:3, 3] = rng.uniform(-2, 2, 3)
+        return matrix
+
+    managers, worlds = [CollisionManager(), CollisionManager()], [{}, {}]
+    single, seen = trimesh.creation.icosphere(2, 0.3), {True: 0, False: 0}
+    for step in range(40):
+        for manager, world in zip(managers, worlds):
+            for _ in range(3):
+                name = f"{rng.integers(5)}"
+                if name in world and rng.random() < 0.2:
+                    manager.remove_object(name)
+                    del world[name]
+                elif name in world and rng.random() < 0.7:
+                    world[name] = world[name][0], placed()
+                    manager.set_transform(name, world[name][1])
+                else:
+                    world[name] = shape(), placed()
+                    manager.add_object(name, *world[name])
+        made = [{n: (supple.Mesh(m.vertices, m.faces), x) for n, (m, x) in world.items()} for world in worlds]
+        cross = {(n, k): plain_answers(a, b) for n, a in made[0].items() for k, b in made[1].items()}
+        hits = {pair for pair, (hit, _) in cross.items() if hit}
+        for _ in range(2):  # also when nothing changed
+            assert managers[0].in_collision_other(managers[1], return_names=True) == (bool(hits), hits)
+            assert managers[1].in_collision_other(managers[0]) is bool(hits)
+        seen[bool(hits)] += 1
+        least = min((distance for _, distance in cross.values()), default=np.inf)
+        distance, names, data = managers[0].min_distance_other(
+            managers[1], return_names=True, return_data=True
+        )
+        assert distance == pytest.approx(least, rel=1e-9, abs=1e-9)
+        if names is not None:
+            assert cross[names][1] == pytest.approx(least, rel=1e-9, abs=1e-9)
+            assert data.distance == distance
+        own = {(n, k): plain_answers(made[0][n], made[0][k]) for n in made[0] for k in made[0] if n < k}
+        hits = {pair for pair, (hit, _) in own.items() if hit}
+        assert managers[0].in_collision_internal(return_names=True) == (bool(hits), hits)
+        least = min((distance for _, distance in own.values()), default=np.inf)
+        assert managers[0].min_distance_internal() == pytest.approx(least, rel=1e-9, abs=1e-9)
+        if step % 3 == 0:
+            single.vertices *= 1.01
+        matrix = placed()
+        alone = {
+            n: plain_answers(a, (supple.Mesh(single.vertices, single.faces), matrix))
+            for n, a in made[0].items()
+        }
+        hits = {n for n, (hit, _) in alone.items() if hit}
+        assert managers[0].in_collision_single(single, matrix, return_names=True) == (bool(hits), hits)
+        least = min((distance for _, distance in alone.values()), default=np.inf)
+        assert managers[0].min_distance_single(single, matrix) == pytest.approx(least, rel=1e-9, abs=1e-9)
+    assert min(seen.values()) > 3
+
+
+def test_many_objects_of_two_managers(at):
+    """More pairs than are compared at once: the broad phase finds those near each other."""
+    trimesh = pytest.importorskip("trimesh")
+    from supple.compat.trimesh import CollisionManager
+
+    box, own, other = trimesh.creation.box((0.5, 0.5, 0.5)), CollisionManager(), CollisionManager()
+    for i in range(80):
+        own.add_object(f"own {i}", box, at(i))
+        other.add_object(f"other {i}", box, at(i, 3))
+    assert own.in_collision_other(other) is False and own.min_distance_other(other) == 2.5
+    for i in (7, 70):
+        other.set_transform(f"other {i}", at(i + 0.1, 0.3))
+        assert own.in_collision_other(other, return_names=True) == (True, {(f"own {i}", f"other {i}")})
+        other.set_transform(f"other {i}", at(i, 2))
+        assert own.in_collision_other(other) is False and own.min_distance_other(other) == 1.5
+        other.set_transform(f"other {i}", at(i, 3))
+
+
+def test_managers_keep_what_stays(at, monkeypatch):
+    """Octrees are built once: of each mesh that comes near, and of the meshes of single questions."""
+    trimesh = pytest.importorskip("trimesh")
+    from supple.compat.trimesh import CollisionManager
+
+    added = []
+    add = supple.Scene.add
+    monkeypatch.setattr(supple.Scene, "add", lambda *a, **k: added.append(1) or add(*a, **k))
+    box, ball, own, other = (
+        trimesh.creation.box(),
+        trimesh.creation.icosphere(2),
+        CollisionManager(),
+        CollisionManager(),
+    )
+    own.add_object("box", box)
+    other.add_object("ball", ball, at(1.2))
+    other.add_object("far", ball, at(90))
+    assert len(added) == 3
+    for x in (1.2, 0.5, 3, 1.1, 3):
+        other.set_transform("ball", at(x))
+        assert own.in_collision_other(other) is (x < 1.5)
+        assert own.min_distance_other(other) == pytest.approx(max(0, x - 1.5), abs=0.02)
+    assert len(added) == 5
+    for i in range(30):
+        mesh = ball.copy().apply_scale(1 + 0.1 * (i % 8))
+        assert own.in_collision_single(mesh, at(0.3 * i)) is (0.3 * i - 0.5 < 1 + 0.1 * (i % 8))
+        assert len(added) == 5 + min(i + 1, 8)
+    other.remove_object("ball")
+    assert not own.in_collision_other(other) and len(next(iter(own._shared.values()))._known) == 1
+    del other
+    gc.collect()
+    assert len(own._shared) == 0
+    for matrix in (np.eye(3), np.diag([1, 1, 1, 2.0])):
+        with pytest.raises(ValueError, match="transform"):
+            own.set_transform("box", matrix)
+
+
+def test_contacts_are_as_deep_as_their_curve_and_their_vertices(at):
+    trimesh = pytest.importorskip("trimesh")
+    from supple.compat.trimesh import CollisionManager
+
+    manager = CollisionManager()
+    manager.add_object("floor", trimesh.creation.box((4, 4, 1)))
+    for depth in (0.0625, 0.25):
+        for x in (0.1, 1.5):  # in the middle, and flush with a side
+            found = manager.in_collision_single(
+                trimesh.creation.box(), at(x, 0.2, 1 - depth), return_data=True
+            )[1]
+            assert len(found) > 0 and all(each.depth == pytest.approx(depth) for each in found), x
+
+
 def test_open_surfaces_are_no_solids(at):
     trimesh = pytest.importorskip("trimesh")
     from supple.compat.trimesh import CollisionManager
@@ -112,6 +270,76 @@ def test_pairs_of_the_ipc_toolkit(rng):
     assert 0 < step < 1
     with pytest.raises(supple.Error, match="missing"):
         CollisionMesh(x, [[0, 1]], faces)
+
+
+def test_rods_and_particles_of_the_ipc_toolkit(rng):
+    """A vertex is near a rod once: as the end of it, or as its inside."""
+
+    def pairs(x, edges, faces=()):
+        return CollisionMesh(np.array(x, float), edges, faces).collisions(np.array(x, float), 0.1)
+
+    rod = [[0, 0, 0], [1, 0, 0]]
+    for points, edges, vv, ev in (
+        ([[0.02, 0.05, 0]], [], [], [[0, 2]]),
+        ([[-0.02, 0.05, 0]], [], [[0, 2]], []),
+        ([[0.5, 0.05, 0], [0.5, 1, 0]], [[2, 3]], [], [[0, 2]]),
+        ([[-0.05, 0, 0], [-0.5, 1, 0]], [[2, 3]], [[0, 2]], []),
+        ([[5, 0, 0], [5, 0.01, 0]], [], [[2, 3]], []),
+    ):
+        found = pairs([*rod, *points], [[0, 1], *edges])
+        assert (found.vv.tolist(), found.ev.tolist(), len(found)) == (vv, ev, 1)
+    # In general position: the closest features of the pairs of elements of a mesh with rods and particles.
+    both = 0
+    for _ in range(30):
+        n, dhat = 20, 0.3
+        x = rng.uniform(size=(n, 3))
+        faces, rods = rng.permutation(n)[:6].reshape(-1, 3), np.empty((0, 2), int)
+        rest = np.setdiff1d(np.arange(n), faces)
+        rods, particles = rest[:6].reshape(-1, 2), rest[6:]
+        edges = np.concatenate([rods, faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)])
+        mesh = CollisionMesh(x, edges, faces)
+        found = mesh.collisions(x, dhat)
+        wanted = set()
+
+        def add(p, q, record):
+            def feature(element, kind, index):
+                if kind == "face" or len(element) == 1:
+                    return tuple(sorted(element))
+                ends = (
+                    [element[index]]
+                    if kind == "vertex"
+                    else [element[index], element[(index + 1) % len(element)]]
+                )
+                return tuple(sorted(ends))
+
+            if not set(p) & set(q) and record.distance <= dhat:
+                a = feature(p, record.feature_a_kind, record.feature_a_index)
+                b = feature(q, record.feature_b_kind, record.feature_b_index)
+                wanted.add(frozenset((a, b)))
+
+        for v in range(n):
+            for f in faces.tolist():
+                add([v], f, supple.point_triangle_distance([x[v]], [x[f]])[0])
+        for i, e in enumerate(edges.tolist()):
+            for k in edges.tolist()[i + 1 :]:
+                add(e, k, supple.edge_edge_distance([x[e]], [x[k]])[0])
+        for v in particles.tolist():
+            for e in rods.tolist():
+                add([v], e, supple.point_edge_distance([x[v]], [x[e]])[0])
+            for w in particles.tolist():
+                if v < w:
+                    add([v], [w], supple.point_point_distance([x[v]], [x[w]])[0])
+        e, f = (
+            [tuple(sorted(each)) for each in edges.tolist()],
+            [tuple(sorted(each)) for each in faces.tolist()],
+        )
+        listed = [frozenset(((v,), (w,))) for v, w in found.vv.tolist()]
+        listed += [frozenset((e[i], (v,))) for i, v in found.ev.tolist()]
+        listed += [frozenset((f[i], (v,))) for i, v in found.fv.tolist()]
+        listed += [frozenset((e[i], e[k])) for i, k in found.ee.tolist()]
+        assert len(listed) == len(set(listed)) and set(listed) == wanted
+        both += bool(len(found.vv) and len(found.ev) and len(found.fv) and len(found.ee))
+    assert both > 10
 
 
 def test_check_of_an_animation(tmp_path):

@@ -45,7 +45,7 @@ def run_on_ranks(ranks, program):
 @RANKS
 def test_ranks(ranks):
     checks = run_on_ranks(ranks, HERE / "program_on_ranks.py").split()
-    assert checks[0] == "random_scenes" and len(checks) == 7
+    assert checks[0] == "random_scenes" and len(checks) == 9
 
 
 @RANKS

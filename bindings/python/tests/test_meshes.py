@@ -104,3 +104,20 @@ def test_edges_and_points():
     assert scene.detect().proximity["distance"].tolist() == [pytest.approx(0.1)]
     with pytest.raises(supple.Error):
         supple.Mesh([[0, 0, 0]], edges=[[0, 0]])
+
+
+def test_paths_and_meshes_that_change_places(tmp_path):
+    box = supple.make_box()
+    with pytest.raises(TypeError, match=r"save_mesh: the second argument, the path, is <supple.Mesh 'box'"):
+        supple.save_mesh(tmp_path / "box.obj", box)
+    with pytest.raises(TypeError, match="load_mesh: the path is <supple.Mesh"):
+        supple.load_mesh(box)
+    with pytest.raises(TypeError, match="open: the path is 3"):
+        supple.open(3)
+    scene = supple.Scene()
+    scene.add(box)
+    with pytest.raises(TypeError, match="record: the first argument, the path, is <supple.Scene"):
+        supple.record(scene, tmp_path / "run.h5")
+    supple.save_mesh(box, tmp_path / "box.obj")
+    supple.save_mesh(str(tmp_path / "box.obj"), tmp_path / "box.ply")  # a path is a mesh, too
+    assert len(supple.load_mesh(tmp_path / "box.ply").triangles) == 12

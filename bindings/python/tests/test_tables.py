@@ -120,3 +120,82 @@ def test_tables_of_other_shapes_and_reports(sphere):
     assert [pair.object_a for pair in pickle.loads(pickle.dumps(result))] == [0]
     with pytest.raises(supple.Error, match="0 to 2"):
         scene.verify_inside([[0, 0, 0]], [7], object=a)
+
+
+def padding(dtype):
+    """The places of the bytes of a record that belong to no column."""
+    used = np.zeros(dtype.itemsize, bool)
+    for kind, at in (each[:2] for each in dtype.fields.values()):
+        used[at : at + kind.itemsize] = True
+    return np.flatnonzero(~used)
+
+
+def test_bytes_between_columns_are_zero(sphere, tmp_path):
+    """So that equal tables have equal bytes, pickles and hashes, whatever was in the memory before."""
+    rng = np.random.default_rng(4)
+    seen = set()
+
+    def check(table):
+        if isinstance(table, supple.Table) and len(table):
+            rows = np.ndarray.view(table, np.ndarray).view(np.uint8).reshape(len(table), -1)
+            assert not rows[:, padding(table.dtype)].any(), table.record
+            seen.add(table.record)
+
+    def found():
+        junk = [rng.integers(1, 255, size, dtype=np.uint8) for size in rng.integers(100, 200_000, 50)]
+        del junk
+        scene, a, b = two_spheres(sphere, apart=1.4)
+        scene.add(0.1 * np.asarray(sphere.positions), sphere.triangles, name="inner")
+        x = np.array(a.positions)
+        for step in range(3):
+            b.positions = np.asarray(sphere.positions) + [1.4 + 0.01 * step, 0, 0]
+            scene.detect()
+        b.set_motion(np.asarray(sphere.positions) + [3, 0, 0], np.asarray(sphere.positions) + [1.4, 0.1, 0])
+        kinds = {"intersection", "proximity", "penetration", "continuous"}
+        result = scene.detect(contacts=kinds, manifolds=True)
+        search = scene.search(contacts=kinds)
+        tables = [result._list(name) for name in result._names()] + [
+            search._list(name) for name in search._names()
+        ]
+        directions = rng.normal(size=x.shape) * 0 + [1, 0.1, 0.2]
+        tables += [
+            scene.closest(x + 0.1),
+            scene.cast(x, directions),
+            scene.cast_all(x, directions),
+            scene.overlaps_boxes(x - 0.1, x + 0.1),
+            scene.distances(),
+            scene.distance(a, b)._row,
+            scene.earliest_impact()._row,
+            scene.max_step().limit._row,
+            supple.point_triangle_distance(x[:9], x[:27].reshape(9, 3, 3)),
+            supple.intersect_triangles(x[:9].reshape(3, 3, 3), x[9:18].reshape(3, 3, 3)),
+            supple.first_impact("edge_edge", x[:16].reshape(4, 4, 3), x[16:32].reshape(4, 4, 3)),
+        ]
+        x[0] = np.nan
+        a.positions = x
+        tables.append(scene.detect().non_finite_vertices)
+        with supple.record(tmp_path / "run.h5", scene) as recorder:
+            recorder.add()
+        frame = supple.open(tmp_path / "run.h5")[0]
+        tables += [frame._list(name) for name in frame._names()]
+        for each in tables:
+            check(each)
+        return [each.tobytes() for each in tables], [pickle.dumps(each) for each in tables]
+
+    first, second = found(), found()
+    assert first == second
+    assert {name for name in seen if len(padding(supple.dtypes[name]))} >= {
+        "Contact",
+        "ContinuousContact",
+        "ContactPoint",
+        "ProximityPair",
+        "Penetration",
+        "IntersectionCurve",
+        "Manifold",
+        "FoundClosestPoint",
+        "FoundRayHit",
+        "FoundElementDistance",
+        "FoundImpact",
+        "TriangleIntersection",
+        "LimitingPair",
+    } - {name for name, dtype in supple.dtypes.items() if not len(padding(dtype))}

@@ -59,6 +59,31 @@ def test_batches(rng):
         losses.proximity_loss(y[:2], faces, y, faces, 0.3)
 
 
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_a_body_that_is_not_finite_has_no_loss(value):
+    x, faces = tensors(supple.make_icosphere(2))
+    far, _ = tensors(supple.make_icosphere(2), (9, 0, 0))
+    for loss in (
+        lambda p: losses.proximity_loss(p, faces, far, faces, 0.3),
+        lambda p: losses.proximity_loss(far, faces, p, faces, 0.3),
+        lambda p: losses.penetration_loss(p, faces, far, faces),
+        lambda p: losses.self_penetration_loss(p, faces, 0.01),
+        lambda p: losses.self_penetration_loss(torch.stack([far, p]), faces)[1],
+    ):
+        bad = x.detach().clone()
+        bad[3, 1] = value
+        bad.requires_grad_()
+        found = loss(bad)
+        assert torch.isnan(found)
+        found.backward()
+        assert torch.isnan(bad.grad).nonzero().tolist() == [[3, 1]]
+    whole = torch.full_like(x, value).requires_grad_()
+    assert torch.isnan(losses.penetration_loss(whole, faces, x, faces))
+    assert losses.penetration_loss(far, faces, x, faces) == 0
+    batch = losses.self_penetration_loss(torch.stack([x, whole]), faces)
+    assert batch[0] == 0 and torch.isnan(batch[1])
+
+
 def test_a_folded_body_is_freed():
     from folded_body import faces_of_limb, folded_pose, limb, self_contacts
 

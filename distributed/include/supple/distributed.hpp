@@ -77,8 +77,9 @@ struct DistributedStats {
 /// `ObjectId::generation`.
 ///
 /// Calls that name an object are calls of the ranks that have it. The others are collective: all ranks make
-/// them in the same order with the same arguments. An error on one rank, such as
-/// bad input or no memory, becomes the same `Error` on all of them, which names the rank.
+/// them in the same order with the same arguments. The ranks compare their calls, arguments and options
+/// first: others are an `Error` on all ranks, which names what differs. An error on one rank, such as bad
+/// input or no memory, becomes the same `Error` on all of them, which names the rank.
 ///
 /// Method: clusters of neighbouring triangles are sent as boxes. Recursive coordinate bisection gives each
 /// rank a region of space. Two clusters are tested by each rank whose region the intersection of their boxes
@@ -89,7 +90,8 @@ struct DistributedStats {
 /// Memory of a rank: the positions and triangles that it added, and octrees of the clusters that it needs.
 class DistributedScene {
  public:
-  /// Collective. Throws `Error` when an option is out of its range.
+  /// Collective. Throws `Error` when an option is out of its range, or other than on another rank. Numbers of
+  /// threads may differ.
   explicit DistributedScene(MPI_Comm communicator, const DistributedOptions& options = {});
   ~DistributedScene();
   DistributedScene(DistributedScene&&) noexcept;
@@ -144,8 +146,9 @@ class DistributedScene {
   SafeStep max_step();
   /// As `Scene::collision_free_step`; the same on all ranks.
   SafeStep collision_free_step(const StepOptions& options = {});
-  /// As `Scene::distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair.
-  std::vector<ProximityPair> distances(double max_distance);
+  /// As `Scene::distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair. A
+  /// stop on one rank is an `Error` on all of them, because an empty list would look like an answer.
+  std::vector<ProximityPair> distances(double max_distance, const CallLimits& limits = {});
   /// As `Scene::closest` for the points of this rank, among the objects of all ranks. The options are the
   /// same on all ranks; a signed distance is an error. Each point goes to the ranks whose regions its ball
   /// meets, whose radius is the distance of the farthest corner of a cluster near it.

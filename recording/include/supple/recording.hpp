@@ -38,6 +38,7 @@ struct RecordingHeader {
   double time_step = 0.01;   ///< s
   SceneOptions scene{};      ///< without the number of threads
   std::string scene_file{};  ///< text of the simulated scene file; empty when there is none
+  std::uint32_t ranks = 1;   ///< processes that find the contacts together: counts of work depend on it
 };
 
 /// One of several processes that write a recording together.
@@ -154,8 +155,9 @@ struct RecordingDifference {
   std::string what;                    ///< one line: the item, its index and both values
 };
 
-/// Compares two recordings, without measured times and file-specific text. Returns nothing when they are
-/// equal. Positions and other lengths may differ by `tolerance` ≥ 0 in each coordinate; 0 compares bits.
+/// Compares two recordings, without measured times and file-specific text, and without counts of work when
+/// their numbers of ranks differ. Returns nothing when they are equal. Positions and other lengths may differ
+/// by `tolerance` ≥ 0 in each coordinate; 0 compares bits.
 std::optional<RecordingDifference> find_first_difference(const Recording& a, const Recording& b,
                                                          double tolerance = 0);
 

@@ -67,6 +67,21 @@ TEST_P(InEveryMode, NotWhatIsMeasuredOrOfTheFile) {
   }));
 }
 
+TEST_P(InEveryMode, CountsOfWorkOnlyOfAsManyRanks) {
+  const auto change = [](std::uint32_t ranks) {
+    return [ranks](Contents& c) {
+      c.header.ranks = ranks;
+      c.frames[1].stats.object_pairs_tested += 1;
+    };
+  };
+  EXPECT_FALSE(after(change(3)));
+  expect(1, "statistics, object_pairs_tested", change(1));
+  expect(2, "time: ", [&](Contents& c) {
+    change(3)(c);
+    c.frames[2].time += 1;
+  });
+}
+
 TEST_P(InEveryMode, WhatIsSaidOnce) {
   expect({}, "time_step: 0.1 and 0.2", [](Contents& c) { c.header.time_step = 0.2; });
   expect({}, "broad_phase: 'automatic' and 'brute'",

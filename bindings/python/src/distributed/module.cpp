@@ -32,6 +32,11 @@ class DistributedCore {
 
   DistributedScene& scene() { return scene_; }
   CallGuard& guard() { return guard_; }
+  HeldFunction& filter() { return filter_; }
+  template <class Visit>
+  void for_each_held(const Visit& visit) const {
+    if (filter_) visit(*filter_);
+  }
   void forget_shared(ObjectId) {}
   std::unique_ptr<Result> detect(const nb::dict& keywords, Stop* stop) {
     DetectRequest request = request_of(keywords, options_.scene, "detect");
@@ -46,6 +51,7 @@ class DistributedCore {
  private:
   const DistributedOptions options_;
   CallGuard guard_;
+  HeldFunction filter_;
   DistributedScene scene_;
 };
 
@@ -67,7 +73,7 @@ NB_MODULE(_distributed, module) {
   module.def("end_calls", &WithoutGil::end_calls);
   module.def("forget_calls", &WithoutGil::forget_calls);
 
-  nb::class_<DistributedCore> scene(module, "DistributedScene");
+  nb::class_<DistributedCore> scene(module, "DistributedScene", nb::type_slots(slots_of<DistributedCore>));
   scene.def("__init__", [](DistributedCore* core, MPI_Fint communicator, const nb::dict& keywords,
                            std::uint8_t results, std::uint32_t cluster_triangles, double max_imbalance) {
     DistributedOptions options{.results = static_cast<ResultPlacement>(results),
@@ -110,13 +116,16 @@ NB_MODULE(_distributed, module) {
         return report_of(run_stoppable(stop, verified, false));
       },
       nb::arg().none());
-  scene.def("distances", [](DistributedCore& core, double max_distance) {
-    const Alone alone(core.guard());
-    return to_table([&] {
-      const WithoutGil without_gil;
-      return core.scene().distances(max_distance);
-    }());
-  });
+  scene.def(
+      "distances",
+      [](DistributedCore& core, double max_distance, Stop* stop) {
+        const Alone alone(core.guard());
+        const auto found = [&](std::stop_token token) {
+          return core.scene().distances(max_distance, {std::move(token)});
+        };
+        return to_table(run_stoppable(stop, found, false));
+      },
+      nb::arg(), nb::arg().none());
   scene.def(
       "closest",
       [](DistributedCore& core, const Matrix<double, 3>& points, std::optional<ObjectId> only,

@@ -5,14 +5,15 @@
     step = mesh.collision_free_step(x0, x1)
 
 Differences. Verdicts are exact: a pair is listed when its distance is at most `dhat`, as exact arithmetic
-decides, and a step is never too long. Each pair of features is listed once; the toolkit's listing of
-vertex-edge and vertex-vertex pairs with multiplicities (weights) and its mollifier of nearly parallel edges
-are not computed. `min_distance` of a step is the separation that all elements keep if they have it.
+decides, and a step is never too long, by whichever method: the toolkit takes tight inclusion by default, and
+additive CCD where it is given. Each pair of features is listed once; the toolkit's weights of repeated pairs
+and its mollifier of nearly parallel edges are not computed. `min_distance` of a step is the separation that all
+elements keep if they have it.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +21,10 @@ import numpy.typing as npt
 from .. import _arrays
 from .._core import Error
 from .._scene import Scene
+
+if TYPE_CHECKING:
+    from .._tables import Table
+    from ..typing import ProximityPair
 
 Ids = npt.NDArray[np.int64]
 
@@ -65,6 +70,8 @@ class CollisionMesh:
         particles = np.setdiff1d(
             np.arange(self._count), np.concatenate([self.faces.ravel(), self.edges.ravel()])
         )
+        self._has_lone = len(rods) + len(particles) > 0
+        self._is_particle = np.isin(np.arange(max(self._count, 1)), particles)
         self._scene = Scene(contacts="proximity", contact_points=False)
         self._object = self._scene.add(
             positions, self.faces, edges=rods, points=particles, self_collision=True
@@ -77,8 +84,14 @@ class CollisionMesh:
         """All pairs of features without a common vertex whose distance is at most `dhat`."""
         self._object.set_margin(dhat / 2)
         self._object.positions = vertices
-        pairs = self._scene.detect(contacts="proximity").proximity_pairs
-        kinds, elements, distances = pairs["kind"], pairs["element"].astype(np.int64), pairs["distance"]
+        listing: Literal["elements", "features"] = "elements" if self._has_lone else "features"
+        pairs = self._scene.detect(contacts="proximity", proximity_listing=listing).proximity_pairs
+        distances = pairs["distance"]
+        if self._has_lone:
+            kinds, elements, kept = self._closest_features(pairs)
+            distances = distances[kept]
+        else:
+            kinds, elements = pairs["kind"], pairs["element"].astype(np.int64)
         # The larger feature first, as in the names of the lists.
         swap = kinds[:, 1] > kinds[:, 0]
         kinds = np.where(swap[:, None], kinds[:, ::-1], kinds)
@@ -86,12 +99,35 @@ class CollisionMesh:
         numbers = elements[:, :, 0].copy()
         edges = kinds == 1
         numbers[edges] = self._edge_numbers(elements[edges])
+        if self._has_lone:  # several elements have the same closest features
+            same = kinds[:, 0] == kinds[:, 1]
+            numbers[same] = np.sort(numbers[same], axis=1)
+            once = np.unique(np.concatenate([kinds, numbers], axis=1), axis=0, return_index=True)[1]
+            kinds, numbers, distances = kinds[once], numbers[once], distances[once]
 
         def chosen(a: int, b: int) -> npt.NDArray[np.bool_]:
             return (kinds[:, 0] == a) & (kinds[:, 1] == b)
 
         lists = [chosen(0, 0), chosen(1, 0), chosen(2, 0), chosen(1, 1)]
-        return Collisions(*(numbers[each] for each in lists), *(distances[each] for each in lists))
+        found: list[Any] = [of[each] for of in (numbers, distances) for each in lists]
+        return Collisions(*found)
+
+    def _closest_features(self, pairs: Table[ProximityPair]) -> tuple[Any, Ids, npt.NDArray[np.bool_]]:
+        """The kinds and elements of the closest features of pairs of elements, and which pairs they are: faces
+        with vertices, edges with edges, particles with edges of no face, and particles with particles. Pairs of
+        edges and faces have the vertices of rods already."""
+        kind, element = pairs["kind"], pairs["element"].astype(np.int64)
+        is_particle = self._is_particle[np.where(kind == 0, element[:, :, 0], 0)]
+        below_face = kind.max(axis=1) < 2
+        kept = ~below_face | (kind.min(axis=1) == 1) | (is_particle | (kind == 1)).all(axis=1)
+        kind, element, corners = kind[kept], element[kept], pairs["vertices"].astype(np.int64)[kept]
+        features = [[pairs[f"feature_{side}_{of}"][kept] for side in "ab"] for of in ("kind", "index")]
+        kinds, first = (np.stack(each, axis=1).astype(np.int64) for each in features)
+        second = (first + 1) % np.maximum(kind + 1, 1)
+        ends = [np.take_along_axis(corners, each[:, :, None], axis=2) for each in (first, second)]
+        of_corners = np.concatenate([ends[0], np.where(kinds[:, :, None] == 1, ends[1], ends[0])], axis=2)
+        of_corners.sort(axis=2)
+        return kinds, np.where(kinds[:, :, None] == 2, element, of_corners), kept
 
     def _edge_numbers(self, edges: Ids) -> Ids:
         return self._order[np.searchsorted(self._sorted_keys, self._keys(edges))]
