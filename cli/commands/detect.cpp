@@ -75,9 +75,9 @@ Input read_input(const DetectOptions& options, Ranks& ranks) {
   if (!is_recording(options.inputs.front())) reading.clips.frames = options.frames;
   Input input = options.sequence ? read_sequence(options.inputs, reading.conversion)
                                  : read_objects(options.inputs, {}, reading);
-  if (ranks.rank() == 0) print_notes(input);
   check_output_names({{"--json", options.json}, {"--csv", options.csv}}, input.files);
   apply(options, input);
+  if (ranks.rank() == 0) print_notes(input);
   if (is_one_mesh(options.inputs, input) && has_proximity(options.scene))
     input.objects.front().options.self_collision = true;
   ranks.check(options, input);

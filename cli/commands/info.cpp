@@ -17,6 +17,7 @@
 #include "inputs/parts.hpp"
 #include "session/messages/described_json.hpp"
 #include "supple/inspection.hpp"
+#include "supple/orientation.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
@@ -30,6 +31,7 @@ struct MeshInfo {
   std::string name;
   MeshTopology topology;
   bool is_open_at_seams = false;
+  std::uint64_t inward_triangles = 0;
   std::uint64_t lines = 0, points = 0;  ///< edges and points of no triangle
   PolygonCounts polygons;
   std::uint64_t non_finite_vertices = 0;
@@ -62,6 +64,7 @@ MeshInfo measure(const InputObject& object, SceneOptions scene_options, const In
   info.name = object.mesh.name;
   info.topology = compute_topology(surface);
   info.is_open_at_seams = is_open_at_seams(surface);
+  info.inward_triangles = count_inward_triangles(surface);
   info.lines = object.mesh.edges.size();
   info.points = object.mesh.points.size();
   info.polygons = object.mesh.polygons;
@@ -104,6 +107,9 @@ void print_text(const MeshInfo& info) {
   if (info.is_open_at_seams)
     fmt::print(
         "               most open edges are seams between vertices at equal positions; --weld closes them\n");
+  if (info.inward_triangles > 0)
+    fmt::print("               {} inwards; a solid takes them as if they faced outwards\n",
+               counted(info.inward_triangles, "triangle faces", "triangles face"));
   fmt::print("  components   {}, Euler characteristic {}\n", grouped(t.components), t.euler_characteristic);
   if (info.bounds) {
     const auto& [lowest, highest] = *info.bounds;
@@ -149,6 +155,7 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
   json.member("boundary_edges", t.boundary_edges);
   json.member("odd_edges", t.odd_edges);
   json.member("open_at_seams", info.is_open_at_seams);
+  json.member("inward_triangles", info.inward_triangles);
   json.member("non_manifold_edges", t.non_manifold_edges);
   json.member("components", t.components);
   json.member("euler_characteristic", t.euler_characteristic);
@@ -171,13 +178,13 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
 
 int run_info(const InfoOptions& options) {
   Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
-  print_notes(input);
   for (InputObject& object : input.objects) {
     if (options.as_2007) object.options.octree = octree_of_2007();
     options.given_objects.apply_to(object.options);
     object.splits = object.splits || options.parts;
   }
   split_parts(input);
+  print_notes(input);
   check_output_names({{"--json", options.json}}, input.files);
   std::optional<JsonWriter> json;
   if (!options.json.empty()) {

@@ -193,7 +193,6 @@ int run_simulate(const SimulateOptions& given, Ranks& ranks) {
   Input input;
   ranks.together([&] {
     input = read_input(options);
-    if (ranks.rank() == 0) print_notes(input);
     std::string xdmf;
     if (!options.record.empty())
       xdmf = std::filesystem::path(options.record).replace_extension(".xdmf").string();
@@ -203,6 +202,7 @@ int run_simulate(const SimulateOptions& given, Ranks& ranks) {
                         {"the .xdmf file of --record", xdmf}},
                        input.files);
     apply(options, input);
+    if (ranks.rank() == 0) print_notes(input);
     ranks.check(options, input);
   });
   if (ranks.size() == 1) warn_of_missing_threads(options.scene.threads);

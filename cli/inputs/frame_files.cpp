@@ -57,7 +57,8 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   const std::filesystem::path& file = sequence_.file_at(step);
   const std::string name = file.string();
   const std::string first = sequence_.files.front().string();
-  const TriangleMesh mesh = read_mesh(file, sequence_.conversion).mesh;
+  TriangleMesh mesh = read_mesh(file, sequence_.conversion).mesh;
+  if (sequence_.placement && sequence_.placement->mirrors()) turn_over(mesh.triangles);
   const auto check_count = [&](const char* what, std::size_t given, std::size_t expected) {
     if (given == expected) return;
     throw Error(fmt::format("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice));

@@ -4,12 +4,18 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "base/text.hpp"
 #include "supple/error.hpp"
+#include "supple/scene.hpp"
 #include "supple/topology.hpp"
 
 namespace supple::cli {
@@ -27,9 +33,45 @@ std::vector<std::uint32_t> ids_in_part(const std::vector<std::uint32_t>& of_mesh
   return ids;
 }
 
+/// The frames of a whole mesh, for its parts, which read one frame after the other.
+class WholeFrames {
+ public:
+  explicit WholeFrames(const InputObject& whole) : positions_(whole.mesh.positions.size()) {
+    if (const auto* const sequence = std::get_if<FrameSequence>(&*whole.motion)) {
+      const auto files = std::make_shared<const FrameFiles>(*sequence, whole.mesh);
+      motion_ = {sequence->files.size(),
+                 [files](std::uint64_t frame, std::span<Vec3d> positions) { files->read(frame, positions); }};
+    } else {
+      motion_ = std::get<ComputedMotion>(*whole.motion);
+    }
+  }
+  std::uint64_t count() const { return motion_.count; }
+  void read(std::uint64_t frame, std::span<const std::uint32_t> vertices, std::span<Vec3d> positions) {
+    const std::lock_guard lock(mutex_);
+    if (frame_ != frame) {
+      frame_.reset();
+      motion_.positions(frame, positions_);
+      frame_ = frame;
+    }
+    for (std::size_t i = 0; i < vertices.size(); ++i) positions[i] = positions_[vertices[i]];
+  }
+
+ private:
+  ComputedMotion motion_;
+  std::mutex mutex_;
+  std::optional<std::uint64_t> frame_;  // of the positions
+  std::vector<Vec3d> positions_;
+};
+
 /// The motion of a part: random motions differ from part to part, as those of copies do.
-Motion motion_of_part(const InputObject& whole, std::uint64_t number,
-                      const std::vector<std::uint32_t>& vertices) {
+Motion motion_of_part(const InputObject& whole, const std::shared_ptr<WholeFrames>& frames,
+                      std::uint64_t number, const std::vector<std::uint32_t>& vertices) {
+  if (frames != nullptr) {
+    return ComputedMotion{frames->count(),
+                          [frames, vertices](std::uint64_t frame, std::span<Vec3d> positions) {
+                            frames->read(frame, vertices, positions);
+                          }};
+  }
   Motion motion = *whole.motion;
   if (auto* const wave = std::get_if<WaveMotion>(&motion)) {
     wave->seed += number;
@@ -44,8 +86,8 @@ Motion motion_of_part(const InputObject& whole, std::uint64_t number,
                   [](const MassSpringMotion::Handle& handle) { return handle.vertices.empty(); });
   } else {
     throw Error(
-        fmt::format("{}: the frames of a sequence or recording have no parts; leave out the parts, "
-                    "or save each part as a sequence of its own",
+        fmt::format("{}: the frames of a recording have no parts; leave out the parts, or record again with "
+                    "parts",
                     one_line(whole.mesh.name)));
   }
   return motion;
@@ -53,11 +95,15 @@ Motion motion_of_part(const InputObject& whole, std::uint64_t number,
 
 void add_parts(InputObject whole, std::vector<InputObject>& objects) {
   std::vector<MeshPart> parts = split_into_parts(whole.mesh, whole.options.weld);
+  std::shared_ptr<WholeFrames> frames;
+  if (whole.motion && (std::holds_alternative<FrameSequence>(*whole.motion) ||
+                       std::holds_alternative<ComputedMotion>(*whole.motion)))
+    frames = std::make_shared<WholeFrames>(whole);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     MeshPart& part = parts[i];
     InputObject& object = objects.emplace_back();
     object.options = whole.options;
-    if (whole.motion) object.motion = motion_of_part(whole, i, part.vertices);
+    if (whole.motion) object.motion = motion_of_part(whole, frames, i, part.vertices);
     object.mesh = std::move(part.mesh);
     if (parts.size() > 1) object.mesh.name += fmt::format(" part {}", i + 1);
     if (!object.options.name.empty()) object.options.name = object.mesh.name;
@@ -72,13 +118,27 @@ void add_parts(InputObject whole, std::vector<InputObject>& objects) {
 
 }  // namespace
 
+/// What users should know about a solid whose connected parts intersect; empty when none do.
+std::string note_of_parts(const InputObject& object) {
+  const TriangleMesh mesh = object.options.weld ? welded(object.mesh) : object.mesh;
+  if (!object.options.solid || compute_topology(mesh).components < 2 || !fault_of_solid(mesh).empty())
+    return "";
+  Scene scene;
+  for (const MeshPart& part : split_into_parts(mesh)) scene.add(part.mesh);
+  if (scene.detect({.max_contacts = 1}).contacts.empty()) return "";
+  return fmt::format(
+      "{}: connected parts of this solid intersect, so what is inside two of them is outside of the solid; "
+      "--parts makes each part an object of its own",
+      one_line(object.mesh.name));
+}
+
 void split_parts(Input& input) {
   std::vector<InputObject> objects;
   for (InputObject& object : input.objects) {
     if (object.splits)
       add_parts(std::move(object), objects);
-    else
-      objects.push_back(std::move(object));
+    else if (std::string note = note_of_parts(objects.emplace_back(std::move(object))); !note.empty())
+      input.notes.push_back(std::move(note));
   }
   input.objects = std::move(objects);
 }

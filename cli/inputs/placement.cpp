@@ -1,6 +1,7 @@
 #include "inputs/placement.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "inputs/random.hpp"
 #include "supple/trigonometry.hpp"
@@ -46,6 +47,10 @@ void place(std::span<Vec3d> positions, const Placement& placement) {
     if (placement.turn) p = rotated(*placement.turn, p);
     p = p + placement.translate;
   }
+}
+
+void turn_over(std::span<Triangle> triangles) {
+  for (Triangle& triangle : triangles) std::swap(triangle[1], triangle[2]);
 }
 
 Rotation random_rotation(std::uint64_t seed, std::uint64_t number) {

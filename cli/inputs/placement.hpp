@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "supple/mesh.hpp"
 #include "supple/types.hpp"
 
 namespace supple::cli {
@@ -21,9 +22,15 @@ struct Placement {
   Vec3d rotate_xyz_degrees;
   std::optional<Rotation> turn{};
   Vec3d translate;
+
+  /// Whether it mirrors. Triangles then turn over, so that they keep their outer sides.
+  bool mirrors() const { return scale < 0; }
 };
 
 void place(std::span<Vec3d> positions, const Placement& placement);
+
+/// Exchanges the last two corners of each triangle.
+void turn_over(std::span<Triangle> triangles);
 
 /// A random rotation for a seed and a number, with uniform distribution (Shoemake, Uniform Random Rotations,
 /// 1992).

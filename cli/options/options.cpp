@@ -188,6 +188,7 @@ CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& depen
     }
   });
   add_weld(*app, options.given_objects);
+  add_parts(*app, options.parts, "Options");
   add_max_contacts(
       *app, options.limits,
       "Write at most this many results: answers of the first points or rays, or the first pairs of "

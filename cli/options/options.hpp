@@ -148,6 +148,7 @@ struct QueryOptions {
   CoordinateConversion conversion;
   viewer::Overrides<SceneOptions> given_scene;     ///< only the number of threads
   viewer::Overrides<ObjectOptions> given_objects;  ///< only welding
+  bool parts = false;                              ///< each connected part is an object
   RunLimits limits;
   double max_distance = std::numeric_limits<double>::infinity();
   bool signed_distance = false;

@@ -21,6 +21,7 @@
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
+#include "inputs/parts.hpp"
 #include "query/point_file.hpp"
 #include "reports/result_json.hpp"
 #include "supple/error.hpp"
@@ -76,12 +77,16 @@ SceneOptions scene_options(const QueryOptions& options) {
 
 Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(options)) {
   Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
+  for (InputObject& object : input.objects) {
+    options.given_objects.apply_to(object.options);
+    object.splits = object.splits || options.parts;
+  }
+  split_parts(input);
   print_notes(input);
   if (!options.file.empty()) input.files.emplace_back(options.file);
   check_output_names({{"--json", options.json}}, input.files);
   warn_of_missing_threads(scene_.options().threads);
-  for (InputObject& object : input.objects) {
-    options.given_objects.apply_to(object.options);
+  for (const InputObject& object : input.objects) {
     scene_.add(object.mesh, object.options);
     has_triangle_.push_back(count_finite_triangles(object.mesh) > 0);
   }

@@ -218,9 +218,9 @@ int run_render(const RenderOptions& options) {
     page = viewer::page_with_json(page, "supple-view", viewer::read_view(options.view_file));
   page = viewer::page_with_json(page, "supple-job", job_of(options, size));
   Input input = read_view_input(options);
-  print_notes(input);
   check_output_names({{"--output", names.of(0)}, {"--view", options.view_file}}, input.files);
   apply(options, input);
+  print_notes(input);
   viewer::SceneView show = build_scene_view(input, options);
   check_frames(options, show, names);
   for (const std::string& warning : viewer::warnings_of_meshes(show))

@@ -248,9 +248,6 @@ void read_objects(const toml::table& table, const fs::path& path, const std::str
     reader.fail("motion", "a static object does not move; leave out motion or static");
   bool parts = false;
   reader.read("parts", parts);
-  if (parts && motion.frames() != nullptr)
-    reader.fail("parts",
-                "the frames of files have no parts; leave out parts, or save each part as files of its own");
   const Shape shape = read_shape(reader, path.parent_path(), motion.frames(), conversion, budget, shapes);
   const TriangleMesh& mesh = shape.mesh;
   reader.finish();
@@ -269,6 +266,7 @@ void read_objects(const toml::table& table, const fs::path& path, const std::str
     if (copies.random_rotation) placed.turn = random_rotation(input.simulation.seed, input.objects.size());
     InputObject& object = input.objects.emplace_back(InputObject{mesh, options, {}, false, {}});
     place(object.mesh.positions, placed);
+    if (placed.mirrors()) turn_over(object.mesh.triangles);
     object.motion = motion.of_copy(copy, placed, object.mesh.positions);
     if (!options.name.empty()) object.mesh.name = options.name;
     if (copies.count() > 1) object.mesh.name += fmt::format(" {}", copy + 1);

@@ -99,9 +99,9 @@ int serve(viewer::SceneView show, const ViewOptions& options, std::string_view p
 /// The input is not kept: a recording that grows must have no other owner.
 viewer::SceneView read_show(const ViewOptions& options) {
   Input input = read_view_input(options);
-  print_notes(input);
   check_output_names({{"--export", options.page_file}, {"--view", options.view_file}}, input.files);
   apply(options, input);
+  print_notes(input);
   return build_scene_view(input, options);
 }
 

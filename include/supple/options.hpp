@@ -144,9 +144,9 @@ struct ObjectOptions {
   double min_separation = 0;
   /// The surface bounds a solid, into which other objects can penetrate. `Scene::add` checks that it is
   /// closed and that its triangles are oriented alike: each edge has as many triangles in one direction as in
-  /// the other. A point is inside where a ray from it crosses the surface an odd number of times. While a
-  /// vertex of a triangle is not finite, nothing is inside; points on the other triangles are still on the
-  /// surface.
+  /// the other. A point is inside where a ray from it crosses the surface an odd number of times. The
+  /// triangles may face inwards or outwards; see `count_inward_triangles`. While a vertex of a triangle is
+  /// not finite, nothing is inside; points on the other triangles are still on the surface.
   bool solid = false;
   /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;

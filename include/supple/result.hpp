@@ -244,14 +244,15 @@ struct ProximityDifference {
   constexpr bool operator==(const ProximityDifference&) const = default;
 };
 
-/// A vertex of a on which `Scene::verify` and the last `Scene::detect` differ: inside b, on its surface, or
-/// the smallest vertex of a contained part.
+/// A vertex of a on which `Scene::verify` and the last `Scene::detect` differ: inside b, on its surface, the
+/// smallest vertex of a contained part, or inside b within a curve.
 struct PenetrationDifference {
   /// What is wrong with the vertex.
   enum class Fault : std::uint8_t {
     missed,   ///< inside, on the surface or contained, and not reported as that
     added,    ///< reported, but not so
-    inexact,  ///< reported with another triangle than the nearest, or with an inaccurate depth
+    inexact,  ///< reported with another triangle than the nearest, or with an inaccurate depth; or it does
+              ///< not leave b when it moves along the normal of the curve by its depth
   };
   ObjectId object_a, object_b;
   std::uint32_t vertex = 0;
@@ -262,7 +263,8 @@ struct PenetrationDifference {
 
 /// Result of `Scene::verify`: exact brute force over every triangle pair of the scene for intersections, and
 /// over every vertex-face and edge-edge pair for continuous contacts and for proximity, and over every vertex
-/// and triangle for penetrations and contained parts. Curves follow from the intersections.
+/// and triangle for penetrations and contained parts. Curves follow from the intersections; their normals and
+/// depths must lead vertices inside a solid out of it.
 struct VerifyReport {
   std::uint64_t triangle_pairs_checked = 0;
   std::uint64_t intersecting_pairs = 0;

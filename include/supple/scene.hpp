@@ -24,8 +24,8 @@ class Scene;
 /// A function that sees each step of a scene; see `Scene::set_observer`.
 using DetectObserver = std::function<void(const Scene&, const DetectRequest&)>;
 
-/// Rigid placement: `rotation` (row-major; it may also scale or shear), then `translation`. A point p becomes
-/// fl(R p) + t. Each row of R p is summed from left to right in double, without fused multiply-add.
+/// Rigid placement: `rotation` (row-major; it may also scale, shear or mirror), then `translation`. A point p
+/// becomes fl(R p) + t. Each row of R p is summed from left to right in double, without fused multiply-add.
 struct RigidTransform {
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
   Vec3d translation{};
@@ -116,7 +116,9 @@ class Scene {
   /// or since the positions were last set.
   void translate(ObjectId object, Vec3d offset);
   /// Places the positions that were last set, or those of `add`. Replaces earlier transforms and
-  /// translations. O(1) when only the translation changes, O(n) otherwise.
+  /// translations. O(1) when only the translation changes, O(n) otherwise. A negative determinant mirrors the
+  /// object: curves and manifolds see its triangles turned over, so that they keep their outer side. Throws
+  /// `Error` for a solid when the matrix is singular. The signs of determinants are exact.
   void set_transform(ObjectId object, const RigidTransform& transform);
   /// Sets a path for continuous contacts: every vertex moves straight from its position in `from` (t = 0) to
   /// its position in `to` (t = 1). Copies both, O(n). The path stays until another call moves the object; all

@@ -12,6 +12,7 @@
 #include "supple/manifold.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
+#include "supple/orientation.hpp"
 #include "supple/penetration.hpp"
 #include "supple/proximity.hpp"
 #include "supple/queries.hpp"

@@ -24,7 +24,7 @@ class Info(ProgramTest):
         self.assertEqual(
             mesh,
             {
-                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "polygons": NO_POLYGONS, "lines": 0, "points": 0, "closed": False, "boundary_edges": 3, "odd_edges": 3, "open_at_seams": False,
+                "name": "a", "vertices": 5, "triangles": 2, "edges": 3, "polygons": NO_POLYGONS, "lines": 0, "points": 0, "closed": False, "boundary_edges": 3, "odd_edges": 3, "open_at_seams": False, "inward_triangles": 0,
                 "non_manifold_edges": 0, "components": 1, "euler_characteristic": 1, "unused_vertices": 2,
                 "degenerate_triangles": 1, "non_finite_vertices": 1, "bounds": [[0.0, 0.0, 0.0], [5.0, 5.0, 5.0]],
             },
@@ -56,6 +56,14 @@ class Info(ProgramTest):
         done = self.run_here("info", "a.lws")
         self.assertEqual((done.status, done.out), (2, ""))
         self.assertRegex(done.error, r"\Asupple: a.lws: Assimp, the library that reads this format, crashed. The file may be fine;.*\n\Z")
+
+    def test_inside_out(self):
+        self.write("in.toml", '[[object]]\nmodel = "box"\n[[object]]\nmodel = "box"\nscale = -1\n')
+        self.assertEqual([mesh["inward_triangles"] for mesh in self.info("in.toml")], [0, 0])
+        self.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n")
+        (mesh,) = self.info("a.obj")
+        self.assertEqual((mesh["closed"], mesh["inward_triangles"]), (True, 4))
+        self.assertIn("\n               4 triangles face inwards; a solid takes them as if they faced outwards\n", self.run_here("info", "a.obj").out)
 
     def test_scene_file(self):
         self.write("scene.toml", '[[object]]\nname = "ring"\nmodel = "torus"\ntranslate = [1, 0, 0]\n[[object]]\nmodel = "box"\n')

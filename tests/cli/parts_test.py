@@ -58,8 +58,36 @@ class Parts(ProgramTest):
         self.write("fixed.toml", scene('mesh = "three.obj"', "parts = true", fixed))
         self.assertEqual(len(self.detect("fixed.toml", "--frames", "2")["objects"]), 3)
         self.write("frames.toml", scene('mesh = "three.obj"', "parts = true", 'motion = { kind = "frames", files = "three.obj" }'))
-        self.assert_one_line_error(self.run_here("detect", "frames.toml"), "parts", "frames of files")
-        self.assert_one_line_error(self.run_here("detect", "--sequence", "three.obj", "three.obj", "--parts"), "parts", "save each part")
+        self.assertEqual(len(self.detect("frames.toml")["objects"]), 3)
+
+    def test_sequences_have_parts(self):
+        two = joined(BOX, moved(BOX, 5, 0, 0))
+        for frame in range(3):
+            self.write(f"f{frame}.obj", joined(BOX, moved(BOX, 5 - 2 * frame, 0, 0)))
+        run = self.detect("--sequence", "f0.obj", "f1.obj", "f2.obj", "--parts")
+        self.assertEqual([o["name"] for o in run["objects"]], ["f0 part 1", "f0 part 2"])
+        self.assertEqual([len(frame["triangle_pairs"]) for frame in run["frames"]], [0, 0, 1])
+        # The same frames as two sequences.
+        for frame in range(3):
+            self.write(f"b{frame}.obj", moved(BOX, 5 - 2 * frame, 0, 0))
+        self.write("box.obj", BOX)
+        self.write("both.toml", scene('mesh = "box.obj"') + scene('motion = { kind = "frames", files = "b*.obj" }'))
+        separate = self.detect("both.toml", "--frames", "3")
+        self.assertEqual([frame["triangle_pairs"] for frame in run["frames"]], [frame["triangle_pairs"] for frame in separate["frames"]])
+
+    def test_query_has_parts(self):
+        self.write("overlap.obj", joined(BOX, moved(BOX, 1, 0, 0)))
+        self.write("points.txt", "1.5 1 1\n")
+        inside = lambda *more: json.loads(self.run_here("query", "inside", "points.txt", "overlap.obj", "--json", "-", *more).out)["results"]
+        self.assertEqual((inside(), inside("--parts")), (["outside"], ["inside"]))
+
+    def test_says_where_parts_of_a_solid_intersect(self):
+        self.write("overlap.obj", joined(BOX, moved(BOX, 1, 0.25, 0.25)))
+        self.write("box.obj", moved(BOX, 9, 0, 0))
+        arguments = ("detect", "overlap.obj", "box.obj", "--contacts", "penetration", "--solid")
+        self.assertIn("overlap: connected parts of this solid intersect", self.run_here(*arguments).error)
+        self.assertIn("--parts", self.run_here(*arguments).error)
+        self.assertNotIn("--parts", self.run_here(*arguments, "--parts").error)
 
     def test_info(self):
         done = self.run_here("info", "three.obj", "--parts", "--json", "-")

@@ -8,6 +8,7 @@
 #include "options.hpp"
 #include "records.hpp"
 #include "scene.hpp"
+#include "supple/orientation.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/topology.hpp"
 
@@ -168,6 +169,8 @@ void bind_inspection(nb::module_& module) {
   module.def("welded", [](const MeshData& mesh) { return MeshData{welded(mesh.mesh)}; });
   module.def("is_open_at_seams", [](const MeshData& mesh) { return is_open_at_seams(mesh.mesh); });
   module.def("fault_of_solid", [](const MeshData& mesh) { return fault_of_solid(mesh.mesh); });
+  module.def("count_inward_triangles",
+             [](const MeshData& mesh) { return count_inward_triangles(mesh.mesh); });
   module.def("split_into_parts", [](const MeshData& mesh, bool weld) {
     nb::list list;
     for (MeshPart& part : split_into_parts(mesh.mesh, weld))

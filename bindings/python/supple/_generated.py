@@ -689,6 +689,8 @@ CONTRACTS = {
         'See `cos_turns` in supple/trigonometry.hpp.',
     'count_leaves':
         'The number of leaves that `for_each_leaf` visits.',
+    'count_inward_triangles':
+        'The number of triangles that face inwards, into what `Scene.inside` finds inside. A solid (`ObjectOptions.solid`) takes them as if they faced outwards: each connected part by the exact sign of its volume, and holes the other way. 0 where the surface bounds no solid (`fault_of_solid`). A part of volume 0 has none. The vertex ids must be valid. O(n log n).',
     'count_neighbour_pairs':
         'The pairs of triangles with a common vertex, which `Neighbours.skip` does not test. O(n log n).',
     'cross':

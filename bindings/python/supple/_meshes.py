@@ -165,6 +165,11 @@ def fault_of_solid(mesh: Any) -> str:
     return str(_core.fault_of_solid(as_mesh(mesh)._core))
 
 
+@contract("count_inward_triangles")
+def count_inward_triangles(mesh: Any) -> int:
+    return int(_core.count_inward_triangles(as_mesh(mesh)._core))
+
+
 class MeshPart(NamedTuple):
     """A connected part of a mesh, with the vertices and triangles of the whole mesh that it has."""
 

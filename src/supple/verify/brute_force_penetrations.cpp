@@ -1,11 +1,16 @@
 #include "verify/brute_force_penetrations.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
+#include "core/sort_once.hpp"
+#include "geometry/exact_predicates.hpp"
 #include "geometry/vector.hpp"
 #include "mesh/vertex_sets.hpp"
+#include "queries/feature_name.hpp"
+#include "verify/brute_force_queries.hpp"
 
 namespace supple {
 namespace {
@@ -155,6 +160,104 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
   };
   note_parts(truth.parts, parts, Fault::missed);
   note_parts(parts, truth.parts, Fault::added);
+}
+
+namespace {
+
+using Edge = std::array<std::uint32_t, 2>;
+constexpr std::uint32_t no_curve = ~std::uint32_t{0}, several_curves = no_curve - 1;
+
+/// For each vertex inside the other object the number of the only curve around it and those that edges
+/// without contacts connect to it, or `no_curve` or `several_curves`.
+std::vector<std::uint32_t> curves_around(const CurveSideTruth& truth, std::size_t side,
+                                         std::span<const IntersectionCurve> curves,
+                                         const DetectResult& result) {
+  const PlainObject& object = *truth.object;
+  std::vector<std::pair<Edge, std::uint32_t>> crossed;  // edges, or vertices as {v, v}, and curves
+  for (std::uint32_t c = 0; c < curves.size(); ++c) {
+    for (const std::uint32_t i : result.contacts_of(curves[c])) {
+      const Contact& contact = result.contacts[i];
+      const std::uint32_t t = side == 0 ? contact.triangle_a : contact.triangle_b;
+      const auto& [v, w, x] = object.triangles[t];
+      for (const ContactPoint& point : result.points_of(contact)) {
+        const FeatureName name = name_of(side == 0 ? point.on_a : point.on_b, {v, w, x}, t);
+        if (name.kind != FeatureKind::face) crossed.push_back({{name.first, name.last}, c});
+      }
+      // The contacts of a triangle without area do not name all of its features.
+      bool used_exact = false;
+      if (find_projection(object.positions[v], object.positions[w], object.positions[x], used_exact))
+        continue;
+      for (const auto& [p, q] : {Edge{v, w}, Edge{w, x}, Edge{v, x}})
+        crossed.push_back({{std::min(p, q), std::max(p, q)}, c});
+    }
+  }
+  sort_once(crossed);
+  const auto crossings_of = [&](std::uint32_t v, std::uint32_t w) {
+    return std::ranges::equal_range(crossed, Edge{std::min(v, w), std::max(v, w)}, {},
+                                    [](const auto& crossing) { return crossing.first; });
+  };
+  std::vector<std::uint8_t> is_inside(object.positions.size());
+  for (const ExactPenetration& p : truth.inside) is_inside[p.vertex] = 1;
+  VertexSets sets(object.positions.size());
+  const auto for_each_edge = [&](const auto& visit) {
+    for (const Triangle& triangle : object.triangles) {
+      for (const auto& [i, k] : {Edge{0, 1}, Edge{1, 0}, Edge{1, 2}, Edge{2, 1}, Edge{2, 0}, Edge{0, 2}}) {
+        if (is_inside[triangle[i]] != 0) visit(triangle[i], triangle[k]);
+      }
+    }
+  };
+  for_each_edge([&](std::uint32_t v, std::uint32_t w) {
+    if (is_inside[w] != 0 && crossings_of(v, w).empty()) sets.join(v, w);
+  });
+  std::vector<std::uint32_t> around(object.positions.size(), no_curve);
+  for_each_edge([&](std::uint32_t v, std::uint32_t w) {
+    for (const auto& crossings : {crossings_of(v, w), crossings_of(w, w)}) {
+      for (const auto& [edge, curve] : crossings) {
+        std::uint32_t& found = around[sets.root(v)];
+        found = found == no_curve || found == curve ? curve : several_curves;
+      }
+    }
+  });
+  for (const ExactPenetration& p : truth.inside) around[p.vertex] = around[sets.root(p.vertex)];
+  return around;
+}
+
+}  // namespace
+
+void verify_curves(const ObjectPair& pair, const std::array<CurveSideTruth, 2>& sides,
+                   const DetectResult& result, std::vector<PenetrationDifference>& differences) {
+  const auto found = std::ranges::equal_range(result.curves, pair, {}, [](const IntersectionCurve& curve) {
+    return ObjectPair{curve.a, curve.b};
+  });
+  const std::span<const IntersectionCurve> curves(found.begin(), found.end());
+  const auto note = [&](const ObjectPair& in_order, std::uint32_t vertex) {
+    differences.push_back({in_order.a, in_order.b, vertex, PenetrationDifference::Fault::inexact});
+  };
+  for (const IntersectionCurve& curve : curves) {
+    const Contact& first = result.contacts[result.contacts_of(curve).front()];
+    if (!(std::fabs(norm(curve.normal) - 1) < 0x1p-40 && curve.depth >= 0))
+      note(pair, sides[0].object->triangles[first.triangle_a][0]);
+  }
+  for (std::size_t side = 0; side < 2 && !curves.empty(); ++side) {
+    if (sides[side].inside.empty()) continue;
+    const std::vector<std::uint32_t> around = curves_around(sides[side], side, curves, result);
+    const std::vector<PlainSurface> outer(1, PlainSurface(*sides[1 - side].object));
+    std::vector<std::size_t> counts(curves.size()), numbers(curves.size());
+    for (const ExactPenetration& p : sides[side].inside) {
+      if (around[p.vertex] < curves.size()) ++counts[around[p.vertex]];
+    }
+    for (const ExactPenetration& p : sides[side].inside) {
+      const std::uint32_t c = around[p.vertex];
+      if (c >= curves.size() || numbers[c]++ % (counts[c] / 256 + 1) != 0) continue;
+      const Vec3d& point = sides[side].object->positions[p.vertex];
+      const double longest = curves[c].depth * (1 + 0x1p-30) + 0x1p-40 * largest_magnitude(point);
+      const std::vector<ExactHit> hits =
+          hits_by_brute_force({point, side == 0 ? curves[c].normal : Vec3d{} - curves[c].normal}, outer);
+      if (!hits.empty() && !std::isfinite(longest)) continue;
+      if (hits.empty() || hits.front().t > Rational(longest))
+        note(side == 0 ? pair : ObjectPair{pair.b, pair.a}, p.vertex);
+    }
+  }
 }
 
 }  // namespace supple

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,5 +42,21 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
                           std::span<const std::uint32_t> on_surface, std::span<const ContainedPart> parts,
                           const BruteForcePenetrations& truth, PenetrationDepths depths,
                           std::vector<PenetrationDifference>& differences);
+
+/// What `verify_curves` knows of one of two objects.
+struct CurveSideTruth {
+  const PlainObject* object = nullptr;
+  /// Its vertices inside the other object, which is solid; none when it is not.
+  std::span<const ExactPenetration> inside;
+};
+
+/// Checks the curves of two objects by what follows from their definition, and appends a difference for each
+/// that fails: the normal is a unit vector, the depth is at least 0, and a vertex inside the other object
+/// leaves it on its way along the normal, after at most the depth (within 2^-30 of it and 2^-40 of the
+/// coordinates). So the depth is also at least that of the vertex. Rationals decide this for vertices that
+/// edges without contacts connect and that contacts of only one curve surround; for about 256 of them for
+/// each curve and object.
+void verify_curves(const ObjectPair& pair, const std::array<CurveSideTruth, 2>& sides,
+                   const DetectResult& result, std::vector<PenetrationDifference>& differences);
 
 }  // namespace supple

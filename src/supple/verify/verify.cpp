@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "answers/search_options.hpp"
@@ -105,13 +106,14 @@ void Verification::verify_penetrations(const ObjectPair& pair, std::span<const T
                                        VerifyReport& report) const {
   if (pair.a == pair.b) return;
   const PlainObject a = plain_object(world_[pair.a.index]), b = plain_object(world_[pair.b.index]);
+  std::vector<ExactPenetration> inside_b, inside_a;
   const auto verify_inside = [&](const ObjectPair& in_order, const PlainObject& inner,
-                                 const PlainObject& outer, std::uint32_t TrianglePair::*side) {
+                                 const PlainObject& outer, std::uint32_t TrianglePair::*side,
+                                 std::vector<ExactPenetration>& found) {
     if (!world_[in_order.b.index].options.solid) return;
     std::vector<std::uint32_t> triangles;
     for (const TrianglePair& touch : touching) triangles.push_back(touch.*side);
-    const BruteForcePenetrations truth =
-        find_penetrations_by_brute_force(inner, outer, triangles, world_.parallel);
+    BruteForcePenetrations truth = find_penetrations_by_brute_force(inner, outer, triangles, world_.parallel);
     report.vertex_triangle_pairs_checked += truth.pairs_checked;
     report.inside_vertices += static_cast<std::uint64_t>(
         std::count_if(truth.vertices.begin(), truth.vertices.end(),
@@ -129,9 +131,12 @@ void Verification::verify_penetrations(const ObjectPair& pair, std::span<const T
     }
     compare_penetrations(in_order, inside, on_surface, parts, truth, question_.depths,
                          report.penetration_differences);
+    std::erase_if(truth.vertices, [](const ExactPenetration& p) { return p.where != Containment::inside; });
+    found = std::move(truth.vertices);
   };
-  verify_inside(pair, a, b, &TrianglePair::a);
-  verify_inside({pair.b, pair.a}, b, a, &TrianglePair::b);
+  verify_inside(pair, a, b, &TrianglePair::a, inside_b);
+  verify_inside({pair.b, pair.a}, b, a, &TrianglePair::b, inside_a);
+  verify_curves(pair, {{{&a, inside_b}, {&b, inside_a}}}, result_, report.penetration_differences);
 }
 
 VerifyReport Verification::run(const CallLimits& limits, const PairShare& share) const {

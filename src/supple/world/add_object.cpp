@@ -69,11 +69,7 @@ ObjectId World::add(const PositionsView& positions, const TrianglesView& triangl
   auto object = std::make_unique<WorldObject>(positions, std::move(faces), extra, named, options, parallel);
   object->move().set_positions(positions, parallel);
   object->measure_built_octree(parallel);
-  object->inward_triangles();
-  if (object->is_flat())
-    fail(object->options.name +
-         " is no solid: its volume is exactly 0, so it has no outside; move its vertices, or add it without "
-         "solid");
+  object->inward_triangles();  // the rest pose decides which sheets bound holes
   if (free_slots_.empty()) {
     slots_.emplace_back();
   } else {

@@ -51,6 +51,51 @@ TEST(GuaranteesForSolvers, LimitedPairsMustBePushedApart) {
               thickness, 1e-12);
 }
 
+/// Some needles over a floor fall in steps of 1, the first of them from just above the floor. Returns how far
+/// the last one falls in some frames.
+double fall_of_last(int frames, bool by_islands, bool pushes_apart) {
+  constexpr double thickness = 0x1p-6;
+  TriangleMesh floor, needle;
+  floor.positions = {{-99, -99, 0}, {99, -99, 0}, {0, 99, 0}};
+  floor.triangles = {{0, 1, 2}};
+  needle.positions = {{0, 0, 0}};
+  Scene scene({.contacts = ContactKinds::continuous});
+  scene.add(floor, {.is_static = true});
+  std::vector<ObjectId> ids;
+  std::vector<Vec3d> places;
+  for (int i = 0; i < 4; ++i) {
+    ids.push_back(scene.add(needle, {.points = {0}}));
+    places.push_back({static_cast<double>(i), 0, i < 3 ? thickness / (i + 1) : 1e3});
+  }
+  for (int frame = 0; frame < frames; ++frame) {
+    std::vector<Vec3d> to = places;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool is_near = places[i].z < 2 * thickness;
+      to[i].z = pushes_apart && is_near ? std::max(places[i].z, thickness) : places[i].z - 1;
+      scene.set_motion(ids[i], std::array{places[i]}, std::array{to[i]});
+    }
+    const double all = scene.collision_free_step().step;
+    std::vector<double> step(places.size(), all);
+    if (by_islands) {
+      for (const ObjectStep& of : scene.collision_free_steps()) {
+        const auto found = std::find(ids.begin(), ids.end(), of.object);
+        if (found != ids.end()) step[static_cast<std::size_t>(found - ids.begin())] = of.safe.step;
+      }
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] += step[i] * (to[i] - places[i]);
+  }
+  for (const Vec3d& place : places) EXPECT_GT(place.z, 0);
+  return 1e3 - places.back().z;
+}
+
+TEST(GuaranteesForSolvers, OneStepForAllStopsAPile) {
+  EXPECT_LT(fall_of_last(30, false, false), 0x1p-6);
+  EXPECT_EQ(fall_of_last(30, true, false), 30);
+  EXPECT_EQ(fall_of_last(30, true, true), 30);
+  // One pair that is left is enough to stop all; here none is.
+  EXPECT_EQ(fall_of_last(30, false, true), 30);
+}
+
 using Pair = std::tuple<std::uint32_t, std::uint32_t, FeatureKind, FeatureKind, std::array<std::uint32_t, 2>,
                         std::array<std::uint32_t, 2>>;
 

@@ -149,8 +149,6 @@ class WorldObject {
   /// `Orientation::inward` of a solid at the positions of its shape; empty for other objects. Takes O(n) when
   /// these have changed.
   std::span<const std::uint8_t> inward_triangles();
-  /// `Orientation::is_flat` at the last call of `inward_triangles`.
-  bool is_flat() const { return orientation_ && orientation_->is_flat(); }
   /// Checks the shapes that are up to date.
   std::string validate() const;
   OctreeStatistics octree_statistics() const;
