@@ -85,7 +85,7 @@ PairFilter filter_of(nb::object function) {
 }
 
 nb::object tuple_of(const SafeStep& step) {
-  return nb::make_tuple(step.step, to_table(step.limit));
+  return nb::make_tuple(step.step, to_table(step.limit), step.stopped);
 }
 
 }  // namespace supple::python

@@ -139,11 +139,11 @@ class DistributedScene {
   /// call also verifies the messages of `detect`. Each rank needs memory for the whole scene.
   VerifyReport verify(const CallLimits& limits = {});
   /// As `Scene::earliest_impact`; the same on all ranks.
-  std::optional<ContinuousContact> earliest_impact();
+  std::optional<ContinuousContact> earliest_impact(const StepLimits& limits = {});
   /// As `Scene::max_step`; the same on all ranks.
-  SafeStep max_step();
+  SafeStep max_step(const StepLimits& limits = {});
   /// As `Scene::collision_free_step`; the same on all ranks.
-  SafeStep collision_free_step(const StepOptions& options = {});
+  SafeStep collision_free_step(const StepOptions& options = {}, const StepLimits& limits = {});
   /// As `Scene::distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair.
   std::vector<ProximityPair> distances(double max_distance);
   /// As `Scene::closest` for the points of this rank, among the objects of all ranks. The options are the
