@@ -79,8 +79,8 @@ class DistributedScene::Implementation {
   }
   const DetectResult& detect(const DetectRequest& request);
   VerifyReport verify(const CallLimits& limits);
-  std::optional<ContinuousContact> earliest_impact();
-  SafeStep collision_free_step(const StepOptions& step);
+  std::optional<ContinuousContact> earliest_impact(const StepLimits& limits);
+  SafeStep safe_step(const std::optional<StepOptions>& step, const StepLimits& limits);
   std::vector<ProximityPair> distances(double max_distance, const CallLimits& limits);
   void closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
                const ClosestOptions& closest_options);

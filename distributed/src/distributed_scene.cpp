@@ -252,11 +252,11 @@ void DistributedScene::set_self_collision(ObjectId id, bool enabled) {
 void DistributedScene::set_pair_filter(PairFilter filter) {
   implementation_->set_filter(std::move(filter));
 }
-std::optional<ContinuousContact> DistributedScene::earliest_impact() {
-  return implementation_->earliest_impact();
+std::optional<ContinuousContact> DistributedScene::earliest_impact(const StepLimits& limits) {
+  return implementation_->earliest_impact(limits);
 }
-SafeStep DistributedScene::collision_free_step(const StepOptions& options) {
-  return implementation_->collision_free_step(options);
+SafeStep DistributedScene::collision_free_step(const StepOptions& options, const StepLimits& limits) {
+  return implementation_->safe_step(options, limits);
 }
 std::vector<ProximityPair> DistributedScene::distances(double max_distance, const CallLimits& limits) {
   return implementation_->distances(max_distance, limits);
@@ -265,11 +265,8 @@ void DistributedScene::closest(std::span<const Vec3d> points, std::span<std::opt
                                const ClosestOptions& options) {
   implementation_->closest(points, results, options);
 }
-SafeStep DistributedScene::max_step() {
-  const auto earliest = implementation_->earliest_impact();
-  if (!earliest) return {};
-  return {earliest->toi, LimitingPair{earliest->object_a, earliest->object_b, earliest->kind,
-                                      earliest->element_a, earliest->element_b}};
+SafeStep DistributedScene::max_step(const StepLimits& limits) {
+  return implementation_->safe_step({}, limits);
 }
 void DistributedScene::save(const std::string& path) {
   implementation_->save(path);

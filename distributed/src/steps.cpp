@@ -21,8 +21,8 @@ std::optional<ContinuousContact> as_contact(const SafeStep& safe) {
   return contact;
 }
 
-SafeStep as_step(const std::optional<ContinuousContact>& contact) {
-  return contact ? SafeStep{contact->toi, pair_of_contact(*contact)} : SafeStep{};
+SafeStep as_step(const std::optional<ContinuousContact>& contact, bool stopped) {
+  return contact ? SafeStep{contact->toi, pair_of_contact(*contact), stopped} : SafeStep{1, {}, stopped};
 }
 
 }  // namespace
@@ -50,23 +50,35 @@ std::optional<ContinuousContact> DistributedScene::Implementation::first_of_all(
   return first;
 }
 
-std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impact() {
-  ranks.begin([&] { return call("earliest_impact"); });
+std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impact(const StepLimits& limits) {
+  ranks.begin([&] {
+    check_limits(limits, "earliest_impact");
+    return call("earliest_impact");
+  });
   const SceneOptions& of = options.scene;
   const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
   question_ = {.contacts = ContactKinds::continuous, .impact = search};
   prepare();
   std::optional<ContinuousContact> own;
-  ranks.together([&] { own = step_search_.earliest_impact(search); });
+  bool is_stopped = false;
+  ranks.together([&] {
+    own = step_search_.earliest_impact(search, limits);
+    is_stopped = stop_of(limits).stop_requested();
+  });
   const std::optional<ContinuousContact> first = first_of_all(own);
+  is_stopped = ranks.any(is_stopped);
   end_step();
-  return first;
+  return is_stopped ? std::nullopt : first;
 }
 
-SafeStep DistributedScene::Implementation::collision_free_step(const StepOptions& step) {
+/// The longest step without `step`.
+SafeStep DistributedScene::Implementation::safe_step(const std::optional<StepOptions>& step,
+                                                     const StepLimits& limits) {
   ranks.begin([&] {
-    check(step, "collision_free_step");
-    return call("collision_free_step").add_options(step);
+    const char* const name = step ? "collision_free_step" : "max_step";
+    if (step) check(*step, name);
+    check_limits(limits, name);
+    return step ? call(name).add_options(*step) : call(name);
   });
   const SceneOptions& of = options.scene;
   const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
@@ -74,9 +86,10 @@ SafeStep DistributedScene::Implementation::collision_free_step(const StepOptions
   prepare();
   SafeStep safe;
   ranks.together([&] {
-    safe = step_search_.safe_step(search, step, [&](const SafeStep& own) {
+    safe = step_search_.safe_step(search, step, limits, [&](const SafeStep& own) {
       ranks.together([] {});  // a rank that failed tells the others here
-      return as_step(first_of_all(as_contact(own)));
+      const std::optional<ContinuousContact> first = first_of_all(as_contact(own));
+      return as_step(first, ranks.any(own.stopped));
     });
   });
   end_step();

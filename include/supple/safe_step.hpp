@@ -2,7 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <version>
+
+#ifdef __cpp_lib_jthread
+#include <stop_token>
+#endif
 
 #include "supple/contact.hpp"
 #include "supple/types.hpp"
@@ -24,8 +30,23 @@ struct SafeStep {
   /// The pair that ends it; of several at the same time the first in canonical order. Nothing for the whole
   /// step.
   std::optional<LimitingPair> limit;
+  /// The call ended before its search, by `StepLimits`. `step` is then a safe part that was found so far,
+  /// often 0; there may be a larger one.
+  bool stopped = false;
 
   constexpr bool operator==(const SafeStep&) const = default;
+};
+
+/// Limits of one search for a step. A call that they end says what it has proven; see `SafeStep::stopped`.
+/// The next call gives the same answer as without the ended one.
+struct StepLimits {
+#ifdef __cpp_lib_jthread
+  /// Any thread can stop the call: it ends within milliseconds.
+  std::stop_token stop{};
+#endif
+  /// The call ends within milliseconds after so many seconds, ≥ 0. The time does not include the refit of the
+  /// objects that moved.
+  double seconds = std::numeric_limits<double>::infinity();
 };
 
 /// The safe part of the step of one object; see `Scene::collision_free_steps`.

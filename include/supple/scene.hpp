@@ -171,12 +171,15 @@ class Scene {
   /// The first continuous contact with `SceneOptions::impact`, or nothing when nothing touches within the
   /// step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that
   /// can only touch later, so with many contacts it is faster than `detect`. Does not change `result` and
-  /// `verify`.
-  std::optional<ContinuousContact> earliest_impact();
-  /// The largest safe part of the step, 0 to 1: the time of `earliest_impact` and its pair, or 1 without an
-  /// impact. Never later than the true first contact. Bodies that already cut through each other at the start
-  /// do not shorten it.
-  SafeStep max_step();
+  /// `verify`. A call that `limits` end returns nothing: ask `StepLimits::stop`, or call `max_step`. Throws
+  /// `Error` when a limit is out of its range.
+  std::optional<ContinuousContact> earliest_impact(const StepLimits& limits = {});
+  /// The largest safe part of the step, 0 to 1, and the pair that ends it: the time of the first impact, or 1
+  /// without one. Never later than the true first contact. Elements that touch at the start end it there only
+  /// where their surfaces meet in the step, as for `collision_free_step`. Elements within the separation at
+  /// the start do not end it when they part, as with `ImpactOptions::skip_parting`. Bodies that already cut
+  /// through each other at the start do not shorten it. Throws `Error` as `earliest_impact` does.
+  SafeStep max_step(const StepLimits& limits = {});
   /// A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of
   /// its distance at the start, `StepOptions::keep`; and the pair that ends it.
   ///
@@ -185,17 +188,20 @@ class Scene {
   /// that parts does not end it. The exact step ends when the first pair is at the distance that it keeps.
   /// The returned step never exceeds the exact one, and is shorter by at most 2^-18 of it.
   ///
-  /// Elements that share a point at the start end the step there, unless they touch at rest: the vertices of
-  /// the features that touch, as `ElementDistance` names them, all move by exactly the same vector. Such a
-  /// pair does not limit the step: two objects that rest, or fixed vertices on a static object.
+  /// Elements that share a point at the start end the step there when the triangles around this point cut
+  /// into each other just after the start, and when one leaves a face through the inner side on which it lies
+  /// flat. Otherwise they end the step where they touch again, and not at all while they slide in one plane
+  /// or move by the same vector. docs/guarantees.md has the exact conditions.
   ///
   /// Otherwise the step is positive. It is proven that also the positions from + t (to - from), computed in
   /// double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements
   /// touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then
   /// the first that would touch. Pairs of more than `SceneOptions::max_exact_bits` can make it shorter.
   ///
-  /// Ignores `ImpactOptions::max_time` and `skip_parting`. Throws `Error` when an option is out of its range.
-  SafeStep collision_free_step(const StepOptions& options = {});
+  /// Ignores `ImpactOptions::max_time` and `skip_parting`. Takes about the time of one to three calls of
+  /// `detect` for the same step, whatever its length. Throws `Error` when an option or a limit is out of its
+  /// range.
+  SafeStep collision_free_step(const StepOptions& options = {}, const StepLimits& limits = {});
   /// A safe part of the step for each object, ascending, so that one pair does not stop all objects. Objects
   /// of one island move by the same part. After each island has moved by its part, or by less, nothing has
   /// crossed and every pair keeps its share as for `collision_free_step`; the islands can move in any order,
@@ -203,9 +209,10 @@ class Scene {
   ///
   /// Two objects that move are in one island unless every two of their elements are so far apart that what
   /// both move towards each other cannot use up their room. Objects that do not move have the step 1 and
-  /// connect nothing. Takes longer than `collision_free_step`, because no time bounds the search. Throws
-  /// `Error` as that function does.
-  std::span<const ObjectStep> collision_free_steps(const StepOptions& options = {});
+  /// connect nothing. Takes longer than `collision_free_step`. A call that `limits` end returns one island of
+  /// all objects that move. Throws `Error` as that function does.
+  std::span<const ObjectStep> collision_free_steps(const StepOptions& options = {},
+                                                   const StepLimits& limits = {});
   /// The result of the last `detect`.
   const DetectResult& result() const;
   /// Takes the memory of this result out of the scene: its spans stay valid as long as what is returned.

@@ -216,8 +216,8 @@ auto run_stoppable(const Stop* stop, const Call& call, bool can_repeat = true) {
 
 /// The same for a call whose stopped answer would look like an answer: a stop is an error.
 template <class Call>
-auto run_or_fail(const Stop* stop, const char* name, const Call& call) {
-  auto result = run_stoppable(stop, call);
+auto run_or_fail(const Stop* stop, const char* name, const Call& call, bool can_repeat = true) {
+  auto result = run_stoppable(stop, call, can_repeat);
   if (stop != nullptr && stop->source.stop_requested())
     throw Error(std::string(name) +
                 ": it was stopped, so there is no answer; a Stop stays requested, make a new one");

@@ -89,7 +89,7 @@ PairFilter filter_of(const HeldFunction& function) {
 }
 
 nb::object tuple_of(const SafeStep& step) {
-  return nb::make_tuple(step.step, to_table(step.limit));
+  return nb::make_tuple(step.step, to_table(step.limit), step.stopped);
 }
 
 }  // namespace supple::python

@@ -121,7 +121,7 @@ void bind_scene(nb::module_& module) {
   nb::class_<SceneCore> scene(module, "Scene", nb::type_slots(slots_of<SceneCore>));
   const auto setter = [&](const char* name, auto set) { scene.def(name, set); };
   scene.def(nb::init<nb::dict>());
-  bind_shared_calls(scene);
+  bind_shared_calls(scene, true);
   scene.def(
       "add",
       [](SceneCore& core, const Array& positions, const Array& triangles, const nb::dict& options,
@@ -162,17 +162,20 @@ void bind_scene(nb::module_& module) {
   });
   scene.def("detect", &SceneCore::detect, nb::arg(), nb::arg().none());
   scene.def("search", &SceneCore::search, nb::arg(), nb::arg().none(), nb::arg().none());
-  scene.def("collision_free_steps", [](SceneCore& core, double keep) {
-    const Alone alone(core.guard());
-    const auto steps = [&] {
-      const WithoutGil without_gil;
-      return core.scene().collision_free_steps({keep});
-    }();
-    nb::list list;
-    for (const ObjectStep& each : steps)
-      list.append(nb::make_tuple(each.object, each.island, each.safe.step, to_table(each.safe.limit)));
-    return list;
-  });
+  scene.def(
+      "collision_free_steps",
+      [](SceneCore& core, double keep, double seconds, Stop* stop) {
+        const Alone alone(core.guard());
+        const auto steps = run_stoppable(stop, [&](std::stop_token token) {
+          return core.scene().collision_free_steps({keep}, {std::move(token), seconds});
+        });
+        nb::list list;
+        for (const ObjectStep& each : steps)
+          list.append(nb::make_tuple(each.object, each.island, each.safe.step, to_table(each.safe.limit),
+                                     each.safe.stopped));
+        return list;
+      },
+      nb::arg(), nb::arg(), nb::arg().none());
   scene.def(
       "verify",
       [](SceneCore& core, Stop* stop) {

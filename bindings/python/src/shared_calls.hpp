@@ -28,9 +28,10 @@ inline nb::dict report_of(const VerifyReport& report) {
   return dict;
 }
 
-/// Binds the calls that a scene and a distributed scene share. `core.scene()` is one of them.
+/// Binds the calls that a scene and a distributed scene share. `core.scene()` is one of them. A collective
+/// call cannot be repeated on one rank.
 template <class Core>
-void bind_shared_calls(nb::class_<Core>& scene) {
+void bind_shared_calls(nb::class_<Core>& scene, bool can_repeat) {
   using Alone = CallGuard::Alone;
   const auto setter = [&](const char* name, auto set) { scene.def(name, set); };
   setter("remove", [](Core& core, ObjectId id) {
@@ -82,27 +83,36 @@ void bind_shared_calls(nb::class_<Core>& scene) {
         core.filter().swap(filter);
       },
       nb::arg().none());
-  scene.def("earliest_impact", [](Core& core) {
-    const Alone alone(core.guard());
-    return to_table([&] {
-      const WithoutGil without_gil;
-      return core.scene().earliest_impact();
-    }());
-  });
-  scene.def("max_step", [](Core& core) {
-    const Alone alone(core.guard());
-    return tuple_of([&] {
-      const WithoutGil without_gil;
-      return core.scene().max_step();
-    }());
-  });
-  scene.def("collision_free_step", [](Core& core, double keep) {
-    const Alone alone(core.guard());
-    return tuple_of([&] {
-      const WithoutGil without_gil;
-      return core.scene().collision_free_step({keep});
-    }());
-  });
+  scene.def(
+      "earliest_impact",
+      [can_repeat](Core& core, Stop* stop) {
+        const Alone alone(core.guard());
+        const auto call = [&](std::stop_token token) {
+          return core.scene().earliest_impact({.stop = std::move(token)});
+        };
+        return to_table(run_or_fail(stop, "earliest_impact", call, can_repeat));
+      },
+      nb::arg().none());
+  scene.def(
+      "max_step",
+      [can_repeat](Core& core, double seconds, Stop* stop) {
+        const Alone alone(core.guard());
+        const auto call = [&](std::stop_token token) {
+          return core.scene().max_step({std::move(token), seconds});
+        };
+        return tuple_of(run_stoppable(stop, call, can_repeat));
+      },
+      nb::arg(), nb::arg().none());
+  scene.def(
+      "collision_free_step",
+      [can_repeat](Core& core, double keep, double seconds, Stop* stop) {
+        const Alone alone(core.guard());
+        const auto call = [&](std::stop_token token) {
+          return core.scene().collision_free_step({keep}, {std::move(token), seconds});
+        };
+        return tuple_of(run_stoppable(stop, call, can_repeat));
+      },
+      nb::arg(), nb::arg(), nb::arg().none());
 }
 
 }  // namespace supple::python

@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import functools
 import importlib
+import math
 import os
 import sys
 import weakref
@@ -189,18 +190,22 @@ the call on all of them.""",
         return VerifyReport(self._core.verify(stop), None)
 
     @contract("DistributedScene::earliest_impact")
-    def earliest_impact(self) -> ContinuousContact | None:
-        return record(self._core.earliest_impact())
+    def earliest_impact(self, *, stop: Stop | None = None) -> ContinuousContact | None:
+        return record(self._core.earliest_impact(stop))
 
     @contract("DistributedScene::max_step")
-    def max_step(self) -> SafeStep:
-        step, limit = self._core.max_step()
-        return SafeStep(step, record(limit))
+    def max_step(self, *, seconds: float = math.inf, stop: Stop | None = None) -> SafeStep:
+        step, limit, stopped = self._core.max_step(_arrays.number(seconds, "seconds"), stop)
+        return SafeStep(step, record(limit), stopped)
 
     @contract("DistributedScene::collision_free_step")
-    def collision_free_step(self, keep: float = 0.2) -> SafeStep:
-        step, limit = self._core.collision_free_step(_arrays.number(keep, "keep"))
-        return SafeStep(step, record(limit))
+    def collision_free_step(
+        self, keep: float = 0.2, *, seconds: float = math.inf, stop: Stop | None = None
+    ) -> SafeStep:
+        step, limit, stopped = self._core.collision_free_step(
+            _arrays.number(keep, "keep"), _arrays.number(seconds, "seconds"), stop
+        )
+        return SafeStep(step, record(limit), stopped)
 
     @contract("DistributedScene::distances", "`stop` on one rank, or Ctrl-C, stops the call on all of them.")
     def distances(self, max_distance: float = np.inf, *, stop: Stop | None = None) -> Table[ProximityPair]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 import weakref
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, NamedTuple
@@ -24,10 +25,15 @@ if TYPE_CHECKING:
 
 
 class SafeStep(NamedTuple):
-    """The safe part of a step, 0 to 1, and the pair that ends it; None for the whole step."""
+    """The safe part of a step, 0 to 1, and the pair that ends it; None for the whole step.
+
+    `stopped`: the call ended before its search, by `stop` or `seconds`; the step is safe, and there may be a
+    larger one.
+    """
 
     step: float
     limit: LimitingPair | None
+    stopped: bool = False
 
 
 class ObjectStep(NamedTuple):
@@ -37,6 +43,7 @@ class ObjectStep(NamedTuple):
     island: Object
     step: float
     limit: LimitingPair | None
+    stopped: bool = False
 
 
 class VerifyReport:
@@ -181,24 +188,33 @@ groups, which run without it. It must not call the scene. What it raises ends th
         return VerifyReport(self._core.verify(stop), self._core)
 
     @contract("Scene::earliest_impact")
-    def earliest_impact(self) -> ContinuousContact | None:
-        return record(self._core.earliest_impact(), self._core)
+    def earliest_impact(self, *, stop: Stop | None = None) -> ContinuousContact | None:
+        return record(self._core.earliest_impact(stop), self._core)
 
     @contract("Scene::max_step")
-    def max_step(self) -> SafeStep:
-        step, limit = self._core.max_step()
-        return SafeStep(step, record(limit, self._core))
+    def max_step(self, *, seconds: float = math.inf, stop: Stop | None = None) -> SafeStep:
+        step, limit, stopped = self._core.max_step(_arrays.number(seconds, "seconds"), stop)
+        return SafeStep(step, record(limit, self._core), stopped)
 
     @contract("Scene::collision_free_step")
-    def collision_free_step(self, keep: float = 0.2) -> SafeStep:
-        step, limit = self._core.collision_free_step(_arrays.number(keep, "keep"))
-        return SafeStep(step, record(limit, self._core))
+    def collision_free_step(
+        self, keep: float = 0.2, *, seconds: float = math.inf, stop: Stop | None = None
+    ) -> SafeStep:
+        step, limit, stopped = self._core.collision_free_step(
+            _arrays.number(keep, "keep"), _arrays.number(seconds, "seconds"), stop
+        )
+        return SafeStep(step, record(limit, self._core), stopped)
 
     @contract("Scene::collision_free_steps")
-    def collision_free_steps(self, keep: float = 0.2) -> list[ObjectStep]:
+    def collision_free_steps(
+        self, keep: float = 0.2, *, seconds: float = math.inf, stop: Stop | None = None
+    ) -> list[ObjectStep]:
+        steps = self._core.collision_free_steps(
+            _arrays.number(keep, "keep"), _arrays.number(seconds, "seconds"), stop
+        )
         return [
-            ObjectStep(self._object(each), self._object(island), step, record(limit, self._core))
-            for each, island, step, limit in self._core.collision_free_steps(_arrays.number(keep, "keep"))
+            ObjectStep(self._object(each), self._object(island), step, record(limit, self._core), stopped)
+            for each, island, step, limit, stopped in steps
         ]
 
     # Objects.

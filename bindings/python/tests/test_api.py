@@ -105,6 +105,7 @@ TYPES = {
     "RootCube": "Scene",
     "SafeStep": "SafeStep",
     "SceneRegion": "Inspector.regions",
+    "StepLimits": "Scene.max_step",
     "StepStats": "Result.stats",
     "TimeBracket": "first_contact_by_algebra",
     "TriangleMesh": "Mesh",

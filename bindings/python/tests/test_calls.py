@@ -91,6 +91,36 @@ def test_ctrl_c_stops_a_call(on_interrupt):
     assert scene.detect(contacts="intersection", max_contacts=1).stopped is False
 
 
+def test_ctrl_c_stops_a_search_for_a_step(on_interrupt):
+    on_interrupt(signal.default_int_handler)
+    scene = busy_scene()
+    calls = []
+    scene.set_pair_filter(lambda a, b: calls.append(1) or True)
+    for search in scene.collision_free_step, scene.collision_free_steps, scene.max_step, scene.earliest_impact:
+        calls.clear()
+        thread = interrupt_after(lambda: calls)
+        with pytest.raises(KeyboardInterrupt):
+            search()
+            time.sleep(60)  # the interrupt may come after the call
+        thread.join()
+    assert not scene.max_step().stopped
+
+
+def test_searches_for_steps_end_earlier(sphere):
+    scene, *_ = two_spheres(sphere)
+    stop = supple.Stop()
+    stop.request()
+    for limits in {"stop": stop}, {"seconds": 0}:
+        for step in (scene.max_step(**limits), scene.collision_free_step(**limits)):
+            assert step.stopped and step.limit is None and 0 <= step.step <= 1
+        assert all(each.stopped for each in scene.collision_free_steps(**limits))
+    with pytest.raises(supple.Error, match="stopped"):
+        scene.earliest_impact(stop=stop)
+    with pytest.raises(supple.Error, match="seconds"):
+        scene.max_step(seconds=-1)
+    assert not scene.collision_free_step().stopped
+
+
 def test_an_ignored_ctrl_c_changes_nothing(on_interrupt, sphere):
     on_interrupt(signal.SIG_IGN)
     scene, *_ = two_spheres(sphere)

@@ -141,11 +141,11 @@ class DistributedScene {
   /// call also verifies the messages of `detect`. Each rank needs memory for the whole scene.
   VerifyReport verify(const CallLimits& limits = {});
   /// As `Scene::earliest_impact`; the same on all ranks.
-  std::optional<ContinuousContact> earliest_impact();
+  std::optional<ContinuousContact> earliest_impact(const StepLimits& limits = {});
   /// As `Scene::max_step`; the same on all ranks.
-  SafeStep max_step();
+  SafeStep max_step(const StepLimits& limits = {});
   /// As `Scene::collision_free_step`; the same on all ranks.
-  SafeStep collision_free_step(const StepOptions& options = {});
+  SafeStep collision_free_step(const StepOptions& options = {}, const StepLimits& limits = {});
   /// As `Scene::distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair. A
   /// stop on one rank is an `Error` on all of them, because an empty list would look like an answer.
   std::vector<ProximityPair> distances(double max_distance, const CallLimits& limits = {});

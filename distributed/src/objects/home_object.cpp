@@ -255,8 +255,7 @@ VertexWays HomeObject::ways_of(const Cluster& cluster) const {
     const Vec3d end = end_[v], start = start_.size() != 0 ? start_[v] : end;
     if (!is_finite(start) || !is_finite(end)) continue;
     ways.longest = std::max(ways.longest, scaled_norm(end - start));
-    ways.largest_coordinate =
-        std::max({ways.largest_coordinate, largest_magnitude(start), largest_magnitude(end)});
+    ways.largest_coordinate = std::max(ways.largest_coordinate, largest_magnitude(start));
   }
   return ways;
 }

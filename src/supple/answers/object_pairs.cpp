@@ -27,7 +27,7 @@ double half_separation_of(const ObjectOptions& object, const VertexWays* ways, c
   const double separation = question.impact.impact.min_separation / 2 + object.min_separation;
   if (!question.safe_step) return separation;
   return separation + kept_share(*question.safe_step) * ways->longest +
-         safe_step_rounding * ways->largest_coordinate;
+         safe_step_rounding * (ways->largest_coordinate + ways->longest);
 }
 
 }  // namespace
@@ -47,9 +47,10 @@ Aabb grown(const Aabb& box, double by) {
   return result;
 }
 
-ObjectPairs::ObjectPairs(const World& world)
+ObjectPairs::ObjectPairs(const World& world, BoundingVolume volume)
     : world_(world),
-      finder_(world.options.broad_phase, world.options.bounding_volume, world.options.scene_octree) {}
+      volume_(volume),
+      finder_(world.options.broad_phase, volume, world.options.scene_octree) {}
 
 /// Lists the boxes and spheres that the broad phase reads, and the slots where they may have changed.
 void ObjectPairs::list_volumes(const Question& question, std::span<const VertexWays> ways) {
@@ -86,7 +87,7 @@ void ObjectPairs::find(const Question& question, std::span<const VertexWays> way
   list_volumes(question, ways);
   ObjectVolumes volumes;
   volumes.dirty = changed_slots_;
-  if (world_.options.bounding_volume == BoundingVolume::sphere) {
+  if (volume_ == BoundingVolume::sphere) {
     volumes.spheres = spheres_;
   } else {
     volumes.boxes = boxes_;
@@ -111,8 +112,7 @@ void ObjectPairs::find(const Question& question, std::span<const VertexWays> way
 /// Whether the oriented boxes or k-DOPs of two objects are apart whose boxes overlap. They do not enclose the
 /// path of an object.
 bool ObjectPairs::are_apart(const IndexPair& pair) const {
-  if (searched_.moving || searched_.near || !is_tested_after_boxes(world_.options.bounding_volume))
-    return false;
+  if (searched_.moving || searched_.near || !is_tested_after_boxes(volume_)) return false;
   return object_volumes_apart(pair_of(world_[pair.a].resting_view(), world_[pair.b].resting_view()));
 }
 

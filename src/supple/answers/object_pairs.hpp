@@ -20,7 +20,8 @@ Aabb grown(const Aabb& box, double growth);
 /// narrow phase tests. It keeps the volumes between searches, so a search tests only what changed.
 class ObjectPairs {
  public:
-  explicit ObjectPairs(const World& world);
+  explicit ObjectPairs(const World& world) : ObjectPairs(world, world.options.bounding_volume) {}
+  ObjectPairs(const World& world, BoundingVolume volume);
 
   /// Call it after `World::refit`. `ways` are those of all slots, for a safe step.
   void find(const Question& question, std::span<const VertexWays> ways = {});
@@ -43,6 +44,7 @@ class ObjectPairs {
   bool are_apart(const IndexPair& pair) const;
 
   const World& world_;
+  BoundingVolume volume_;
   PairFinder finder_;
   std::vector<ObjectPair> pairs_;
   std::vector<ContactJob> jobs_;

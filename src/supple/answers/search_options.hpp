@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "geometry/vector.hpp"
 #include "supple/options.hpp"
 
 namespace supple {
@@ -34,8 +35,14 @@ inline double kept_share(const StepOptions& step) {
 }
 
 /// Two vertices at from + t (to - from), computed in double, come nearer by rounding by less than this share
-/// of their largest coordinate: each coordinate takes three roundings of at most 2^-53 of |from| + 2 |to -
-/// from|.
+/// of their largest coordinate at the start plus t times their longest way: each coordinate takes three
+/// roundings of at most 2^-53 of |from| + 2 t |to - from|.
 constexpr double safe_step_rounding = 0x1p-48;
+
+/// Where a vertex moves by this part, as users compute it. Ways that overflow take another formula.
+inline Vec3d rounded_position(const Vec3d& start, const Vec3d& end, double part) {
+  const Vec3d position = start + part * (end - start);
+  return is_finite(position) ? position : mix(start, end, part);
+}
 
 }  // namespace supple

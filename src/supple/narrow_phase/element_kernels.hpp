@@ -65,8 +65,8 @@ class ElementPairBatches {
 };
 
 /// Parameters of the test of moving boxes: whether they come within `separation` of each other until the time
-/// `latest`, from 2^-20 to 1. The boxes of b are moved by `offset`; the separation covers the rounding errors
-/// of this.
+/// `latest`, from 2^-100 to 1. The boxes of b are moved by `offset`; the separation covers the rounding
+/// errors of this.
 struct PartOfStep {
   float separation = 0;
   float latest = 1;

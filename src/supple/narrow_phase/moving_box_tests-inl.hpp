@@ -52,14 +52,18 @@ HWY_INLINE Vector placed(Tag tag, Vector side, float offset, float separation, f
 
 /// Bounds at a time between the two ends of the step. They are farther out, in the direction `outward` (-1 or
 /// 1), than any rounding error. They stay within the range of float, so that an inverted box stays inverted.
+/// A bound at the end of the range may be farther out, and so may be all bounds between it and another.
 template <class Tag, class Vector = hn::Vec<Tag>>
 HWY_INLINE Vector between(Tag tag, Vector start, Vector end, float time, float outward) {
-  const Vector sizes = hn::Add(hn::Abs(start), hn::Abs(end));
+  const Vector greatest = hn::Set(tag, greatest_bound), out = hn::Set(tag, outward);
+  const Vector part = hn::Mul(end, hn::Set(tag, time));
+  const Vector sizes = hn::Add(hn::Abs(start), hn::Abs(part));
   const Vector slack = hn::Min(hn::Mul(hn::Set(tag, 0x1p-21f), sizes), hn::Set(tag, greatest_bound / 4));
-  const Vector bound = hn::Add(hn::Mul(start, hn::Set(tag, 1 - time)), hn::Mul(end, hn::Set(tag, time)));
-  const Vector moved =
-      hn::Add(bound, hn::Mul(hn::Set(tag, outward), hn::Add(slack, hn::Set(tag, 0x1p-120f))));
-  return hn::Min(hn::Max(moved, hn::Set(tag, -greatest_bound)), hn::Set(tag, greatest_bound));
+  const Vector bound = hn::Add(hn::Mul(start, hn::Set(tag, 1 - time)), part);
+  const Vector moved = hn::Add(bound, hn::Mul(out, hn::Add(slack, hn::Set(tag, 0x1p-120f))));
+  const auto is_at_end = hn::Ge(hn::Max(hn::Mul(start, out), hn::Mul(end, out)), greatest);
+  return hn::IfThenElse(is_at_end, hn::Mul(greatest, out),
+                        hn::Min(hn::Max(moved, hn::Neg(greatest)), greatest));
 }
 
 /// Moves boxes by `part.offset`, grows them by the separation, and replaces their end by that of the part of

@@ -24,12 +24,15 @@ bool stay_apart(const ObjectPairView& pair, const PartOfStep& part, std::uint32_
   const auto at_end = [&](float start, float end) {
     return (1 - double{part.latest}) * start + double{part.latest} * end;
   };
+  const auto size_of = [](const Aabb& a, const Aabb& b, int axis) {
+    return std::fabs(double{a.min[axis]}) + std::fabs(double{a.max[axis]}) + std::fabs(double{b.min[axis]}) +
+           std::fabs(double{b.max[axis]});
+  };
   for (int axis = 0; axis < 3; ++axis) {
-    const double offset = part.offset[axis];
-    const double size = std::fabs(double{a0.min[axis]}) + std::fabs(double{a0.max[axis]}) +
-                        std::fabs(double{b0.min[axis]}) + std::fabs(double{b0.max[axis]}) +
-                        std::fabs(double{a1.min[axis]}) + std::fabs(double{a1.max[axis]}) +
-                        std::fabs(double{b1.min[axis]}) + std::fabs(double{b1.max[axis]}) + std::fabs(offset);
+    const double offset = part.offset[axis], size_at_end = size_of(a1, b1, axis);
+    // A bound at the end of the range of float may be farther out.
+    if (part.latest < 1 && !(size_at_end < std::numeric_limits<float>::max())) continue;
+    const double size = size_of(a0, b0, axis) + part.latest * size_at_end + std::fabs(offset);
     const double least = part.separation + 0x1p-50 * size;
     const double above_start = b0.min[axis] + offset - a0.max[axis],
                  above_end = at_end(b0.min[axis], b1.min[axis]) + offset - at_end(a0.max[axis], a1.max[axis]);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/float_rounding.hpp"
 #include "core/stop_signal.hpp"
 #include "narrow_phase/element_kernels.hpp"
 #include "narrow_phase/overlap_kernels.hpp"
@@ -53,6 +54,8 @@ struct ObjectPairView {
   float separation = 0;
   /// Null, or the time in the step until which contacts are of interest. It may decrease during the search.
   const std::atomic<float>* latest = nullptr;
+  /// Added to the separation, times that time.
+  double growth = 0;
   /// Share of the largest approach of two vertices of two children that is added to their separation.
   double kept_share = 0;
   /// The two children may move by any parts of their ways, so that the sum of both ways counts instead of the
@@ -62,9 +65,10 @@ struct ObjectPairView {
 
   /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.
   PartOfStep part_of_step() const {
-    constexpr float least = 0x1p-20f, most = 0.125f;
-    const float until = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
-    return {separation, until < most ? std::max(until, least) : 1, placement.offset, kinds};
+    constexpr float least = 0x1p-100f, most = 0.125f;
+    const float latest_now = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
+    const float until = latest_now < most ? std::max(latest_now, least) : 1;
+    return {growth > 0 ? round_up(separation + growth * until) : separation, until, placement.offset, kinds};
   }
   /// The same for two children, with the separation that `kept_share` asks for.
   PartOfStep part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b, int child_b) const;
@@ -153,8 +157,12 @@ class Traversal {
                                                      pair.same_object, *element_boxes_, element_pairs_);
     };
     descend(pair, root, stats, [&](std::span<const LeafPair> leaves) {
-      if (pair.kept_share == 0) return find_pairs(leaves, pair.part_of_step());
+      constexpr std::size_t few = 8;  // so that they see a time that has decreased
+      const std::size_t step = pair.latest != nullptr ? few : leaves.size();
+      for (std::size_t i = 0; pair.kept_share == 0 && i < leaves.size(); i += step)
+        find_pairs(leaves.subspan(i, std::min(step, leaves.size() - i)), pair.part_of_step());
       for (const LeafPair& leaf_pair : leaves) {
+        if (pair.kept_share == 0) return;
         element_boxes_->clear();  // they have the separation of the pair before
         find_pairs({&leaf_pair, 1}, part_of_step(pair, leaf_pair));
       }

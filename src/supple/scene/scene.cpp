@@ -137,20 +137,23 @@ const DetectResult& Scene::detect(const DetectRequest& request) {
 const DetectResult& Scene::search(const DetectRequest& request, const PairFilter& only) {
   return implementation_->search(request, only);
 }
-std::optional<ContinuousContact> Scene::earliest_impact() {
-  return implementation_->step_search.earliest_impact(implementation_->impact_options());
+std::optional<ContinuousContact> Scene::earliest_impact(const StepLimits& limits) {
+  check_limits(limits, "earliest_impact");
+  return implementation_->step_search.earliest_impact(implementation_->impact_options(), limits);
 }
-SafeStep Scene::collision_free_step(const StepOptions& step) {
+SafeStep Scene::collision_free_step(const StepOptions& step, const StepLimits& limits) {
   check(step, "collision_free_step");
-  return implementation_->step_search.safe_step(implementation_->impact_options(), step);
+  check_limits(limits, "collision_free_step");
+  return implementation_->step_search.safe_step(implementation_->impact_options(), step, limits);
 }
-std::span<const ObjectStep> Scene::collision_free_steps(const StepOptions& step) {
+std::span<const ObjectStep> Scene::collision_free_steps(const StepOptions& step, const StepLimits& limits) {
   check(step, "collision_free_steps");
-  return implementation_->step_search.safe_steps(implementation_->impact_options(), step);
+  check_limits(limits, "collision_free_steps");
+  return implementation_->step_search.safe_steps(implementation_->impact_options(), step, limits);
 }
-SafeStep Scene::max_step() {
-  const auto earliest = implementation_->step_search.earliest_impact(implementation_->impact_options());
-  return earliest ? SafeStep{earliest->toi, pair_of_contact(*earliest)} : SafeStep{};
+SafeStep Scene::max_step(const StepLimits& limits) {
+  check_limits(limits, "max_step");
+  return implementation_->step_search.safe_step(implementation_->impact_options(), {}, limits);
 }
 const DetectResult& Scene::result() const {
   return implementation_->result;

@@ -335,17 +335,23 @@ TEST(SafeStep, IsNotEndedByPairsWithinTheSeparationThatPart) {
   const std::vector<Path> paths{{triangle_at(0.01), triangle_at(0.5).positions},
                                 {triangle_at(0), triangle_at(0).positions}};
   Scene scene = scene_of(paths, 0.1);
-  EXPECT_EQ(scene.max_step().step, 0);
+  EXPECT_EQ(scene.max_step().step, 1);
+  EXPECT_EQ(scene.earliest_impact()->toi, 0) << "a contact does not say whether they part";
   EXPECT_EQ(scene.collision_free_step().step, 1);
   Scene nearer = scene_of(
       {{triangle_at(0.01), triangle_at(0).positions}, {triangle_at(0), triangle_at(0).positions}}, 0.1);
+  EXPECT_EQ(nearer.max_step().step, 0);
   EXPECT_NEAR(nearer.collision_free_step({.keep = 0.25}).step, 0.75, 1e-5);
 }
 
-TEST(SafeStep, IsZeroWhereElementsTouchAtTheStart) {
-  Scene scene =
-      scene_of({{triangle_at(0), triangle_at(1).positions}, {triangle_at(0), triangle_at(0).positions}});
-  EXPECT_EQ(scene.collision_free_step().step, 0);
+TEST(SafeStep, IsZeroWhereElementsTouchAtTheStartAndOneLeavesAFaceInwards) {
+  for (const double height : {1.0, -1.0}) {
+    Scene scene = scene_of(
+        {{triangle_at(0), triangle_at(height).positions}, {triangle_at(0), triangle_at(0).positions}});
+    EXPECT_EQ(scene.collision_free_step().step, height > 0 ? 1 : 0);
+    EXPECT_EQ(scene.max_step().step, height > 0 ? 1 : 0);
+    EXPECT_EQ(scene.earliest_impact()->toi, 0);
+  }
   Scene at_rest =
       scene_of({{triangle_at(0), triangle_at(0).positions}, {triangle_at(0), triangle_at(0).positions}});
   EXPECT_EQ(at_rest.collision_free_step().step, 1) << "nothing moves";
@@ -468,8 +474,114 @@ TEST(SafeStep, IgnoresVerticesThatAreNotFinite) {
   EXPECT_EQ(Scene().collision_free_step().step, 1);
 }
 
+TEST(SafeSteps, ListNoFreeSlots) {
+  Scene scene({.contacts = ContactKinds::continuous});
+  const TriangleMesh high = triangle_at(1);
+  const ObjectId falling = scene.add(high), removed = scene.add(high), floor = scene.add(triangle_at(0));
+  scene.set_motion(falling, high.positions, triangle_at(-1).positions);
+  scene.remove(removed);
+  const auto steps = scene.collision_free_steps();
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_EQ(steps[0].object, falling);
+  EXPECT_LT(steps[0].safe.step, 0.5);
+  EXPECT_EQ(steps[1].object, floor);
+  scene.remove(falling);
+  EXPECT_EQ(scene.collision_free_steps().size(), 1u);
+}
+
+/// Boxes of the ways decide which objects can be in one island, whatever volumes the scene has.
+TEST(SafeSteps, HaveTheSameIslandsForAllVolumes) {
+  RandomNumbers random(3);
+  int joined = 0;
+  for (int round = 0; round < 40; ++round) {
+    const std::vector<Path> paths = scattered_sheets(random, 2);
+    std::vector<ObjectStep> expected;
+    for (const BoundingVolume volume :
+         {BoundingVolume::aabb, BoundingVolume::sphere, BoundingVolume::obb, BoundingVolume::kdop18}) {
+      Scene scene({.bounding_volume = volume, .contacts = ContactKinds::continuous});
+      for (const Path& path : paths) scene.set_motion(scene.add(path.mesh), path.mesh.positions, path.to);
+      const auto found = scene.collision_free_steps({.keep = 0.5});
+      if (expected.empty()) expected.assign(found.begin(), found.end());
+      EXPECT_TRUE(std::ranges::equal(found, expected)) << round;
+      joined += std::ranges::count_if(found, [](const ObjectStep& s) { return s.island != s.object; }) > 0;
+    }
+  }
+  EXPECT_GT(joined, 20);
+}
+
+/// Sheets that fly `length` times as far as they are large.
+std::vector<Path> wild_sheets(double length) {
+  RandomNumbers random(5);
+  std::vector<Path> paths = flying_sheets(4);
+  for (Path& path : paths) {
+    for (std::size_t v = 0; v < path.to.size(); ++v)
+      path.to[v] = path.mesh.positions[v] + length * random.vector(1);
+  }
+  return paths;
+}
+
+/// The step of a motion is in proportion to its length, and it is found with as little exact arithmetic.
+TEST(SafeStep, OfWildMotionsIsThatOfShortOnes) {
+  for (const double keep : {0.0, 0.2, 0.9}) {
+    Scene of_short = scene_of(wild_sheets(1));
+    const double expected = of_short.collision_free_step({.keep = keep}).step,
+                 longest = of_short.max_step().step;
+    for (const double length : {1e3, 1e6, 1e9}) {
+      Scene scene = scene_of(wild_sheets(length));
+      const SafeStep found = scene.collision_free_step({.keep = keep});
+      EXPECT_NEAR(found.step * length / expected, 1, 1e-5) << length << " " << keep;
+      EXPECT_NEAR(scene.max_step().step * length / longest, 1, 1e-5) << length;
+      const std::vector<Path> paths = wild_sheets(length);
+      if (length < 1e9) EXPECT_GE(least_share(paths, found.step, 0), keep * (1 - 1e-4)) << length;
+      double least = 1;
+      for (const ObjectStep& step : scene.collision_free_steps({.keep = keep}))
+        least = std::min(least, step.safe.step);
+      EXPECT_EQ(least, found.step) << length << " " << keep;
+    }
+  }
+}
+
+#ifdef __cpp_lib_jthread
+TEST(SafeStep, IsSafeWhereTheCallEndsEarlier) {
+  std::stop_source source;
+  source.request_stop();
+  for (const double length : {1.0, 1e6}) {
+    const std::vector<Path> paths = wild_sheets(length);
+    Scene scene = scene_of(paths);
+    const SafeStep whole = scene.collision_free_step(), longest = scene.max_step();
+    const StepLimits stopped{.stop = source.get_token()}, out_of_time{.seconds = 0};
+    for (const StepLimits& limits : {stopped, out_of_time}) {
+      for (const SafeStep& found : {scene.collision_free_step({}, limits), scene.max_step(limits)}) {
+        EXPECT_TRUE(found.stopped);
+        EXPECT_FALSE(found.limit);
+        EXPECT_GE(found.step, 0);
+        EXPECT_LE(found.step, whole.step);
+      }
+      const auto steps = scene.collision_free_steps({}, limits);
+      ASSERT_EQ(steps.size(), 2u);
+      for (const ObjectStep& step : steps) {
+        EXPECT_TRUE(step.safe.stopped);
+        EXPECT_EQ(step.island, steps[0].object);
+        EXPECT_LE(step.safe.step, whole.step);
+      }
+      EXPECT_FALSE(scene.earliest_impact(limits));
+    }
+    EXPECT_EQ(scene.collision_free_step({}, {.seconds = 1e6}), whole);
+    EXPECT_EQ(scene.max_step(), longest);
+    EXPECT_FALSE(whole.stopped);
+  }
+}
+#endif
+
 TEST(SafeStep, RefusesSharesOutOfRange) {
   Scene scene;
+  for (const double seconds : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const StepLimits limits{.seconds = seconds};
+    EXPECT_THROW(scene.collision_free_step({}, limits), Error);
+    EXPECT_THROW(scene.collision_free_steps({}, limits), Error);
+    EXPECT_THROW(scene.max_step(limits), Error);
+    EXPECT_THROW(scene.earliest_impact(limits), Error);
+  }
   for (const double keep : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(scene.collision_free_step({.keep = keep}), Error);
 }

@@ -83,7 +83,7 @@ NB_MODULE(_distributed, module) {
     const WithoutGil without_gil;
     new (core) DistributedCore(communicator, options);
   });
-  bind_shared_calls(scene);
+  bind_shared_calls(scene, false);
   scene.def(
       "add",
       [](DistributedCore& core, ObjectId id, const Array& positions, const Array& triangles,

@@ -105,7 +105,8 @@ bool ImpactPass::run(const PassInput& input, std::span<const MovingObject> objec
                               options.listing == last_options_.listing;
   options_ = last_options_ = options;
   search_ = Search::all;
-  latest_ = end_of_search(options_.impact);
+  latest_[0] = end_of_search(options_.impact);
+  latest_of_job_.assign(input.jobs.size(), 0);
   // Which contacts are the first of an element is known when all were found.
   const std::uint64_t most = lists_first() ? ContactLimit::unlimited : input.max_contacts;
   if (!run_open_jobs(input, is_same_search, most, stats)) return false;
@@ -118,21 +119,32 @@ bool ImpactPass::run(const PassInput& input, std::span<const MovingObject> objec
   return true;
 }
 
-std::optional<ContinuousContact> ImpactPass::find_earliest(std::span<const ContactJob> jobs,
+std::optional<ContinuousContact> ImpactPass::find_earliest(const PassInput& input,
                                                            std::span<const MovingObject> objects,
-                                                           const ImpactSearchOptions& options,
-                                                           const Parallel& parallel) {
-  begin(jobs, objects, {});
-  options_ = options;
-  limit_.start(ContactLimit::unlimited, 0);
-  all_jobs_.resize(jobs.size());
+                                                           const ImpactSearchOptions& options) {
+  start(input, objects, options);
+  all_jobs_.resize(jobs_.size());
   std::iota(all_jobs_.begin(), all_jobs_.end(), 0u);
-  search(Search::earliest, all_jobs_, end_of_search(options_.impact), parallel);
-  const Earliest* const best = earliest_of_workers();
-  return best != nullptr ? std::optional(best->contact) : std::nullopt;
+  const Earliest* const best =
+      search_earliest(Search::earliest, end_of_search(options_.impact), input.parallel);
+  return best != nullptr && !stop_.stop_requested() ? std::optional(best->contact) : std::nullopt;
 }
 
-const ImpactPass::Earliest* ImpactPass::earliest_of_workers() const {
+void ImpactPass::start(const PassInput& input, std::span<const MovingObject> objects,
+                       const ImpactSearchOptions& options) {
+  begin(input.jobs, objects, input.stop);
+  options_ = options;
+  limit_.start(ContactLimit::unlimited, 0);
+  latest_of_job_.assign(jobs_.size(), 0);
+}
+
+/// With a limit of exact arithmetic, which undecided pairs a search meets must not depend on the order in
+/// which threads find impacts. So certain contacts end it first, and then it runs until a fixed time.
+const ImpactPass::Earliest* ImpactPass::search_earliest(Search search, float until,
+                                                        const Parallel& parallel) {
+  only_certain_ = has_exact_limit();
+  search_until(search, until, parallel);
+  if (std::exchange(only_certain_, false)) search_until(search, latest_[0], parallel);
   const Earliest* best = nullptr;
   for (const Worker& worker : workers_) {
     if (!worker.earliest) continue;
@@ -142,11 +154,13 @@ const ImpactPass::Earliest* ImpactPass::earliest_of_workers() const {
   return best;
 }
 
-void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, float until,
-                        const Parallel& parallel) {
+void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel) {
   search_ = search;
-  latest_ = until;
   run_tasks(jobs, parallel);
+}
+void ImpactPass::search_until(Search search, float until, const Parallel& parallel) {
+  latest_[0] = until;
+  this->search(search, all_jobs_, parallel);
 }
 
 ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
@@ -163,11 +177,12 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   const double distance = searched_distance(job);
   ObjectPairView pair =
       &a == &b ? moving_self_pair_of(a.view, distance) : moving_pair_of(a.view, b.view, distance);
+  pair.growth = growth_of_distance(job);
   pair.kept_share = share_of_approach();
   pair.any_parts = search_ == Search::free;
-  if (distance > 0 || pair.kept_share > 0) pair.a.culled = nullptr;
+  if (distance > 0 || pair.growth > 0 || pair.kept_share > 0) pair.a.culled = nullptr;
   pair.kinds = options_.kinds;
-  if (latest_ < 1 || search_ != Search::all) pair.latest = &latest_;
+  if (latest_of(job) < 1 || search_ != Search::all) pair.latest = &latest_of(job);
   return pair;
 }
 
@@ -196,15 +211,15 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
   const MovingObject& b = objects_[jobs_[job].b];
   const auto objects = objects_of(kind, a, b);
   const bool are_edges = kind == ElementPairKind::edge_edge, excludes = limit_.excludes_some();
-  const double distance = searched_distance(job), kept = kept_distance(job);
+  const double distance = searched_distance(job), growth = growth_of_distance(job) + kept_distance(job);
   std::array<std::array<std::uint32_t, 4>, block_size> vertices;
   for (; !candidates.empty() && !stop_.stop_requested();
        candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
     const auto part = candidates.first(std::min(block_size, candidates.size()));
     for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
-    const float latest = latest_.load(std::memory_order_relaxed);
+    const float latest = latest_of(job).load(std::memory_order_relaxed);
     fill(objects, std::span(vertices).first(part.size()), are_edges, latest, worker.block);
-    const float reach = round_up(distance + kept * latest);
+    const float reach = round_up(distance + growth * latest);
     std::uint64_t left = may_touch(worker.block, part.size(), are_edges, reach);
     std::size_t count = 0;
     for (; left != 0; left &= left - 1) {
@@ -249,7 +264,11 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
     const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, of_pair, used_exact);
     worker.stats.exact_fallbacks += used_exact ? 1 : 0;
     if (!impact) continue;
-    if (search_ == Search::touching && impact->touching_at_start && touch_at_rest(pair.motion)) continue;
+    if (only_certain_ && impact->certainty != ImpactCertainty::certain) continue;
+    if (search_ >= Search::longest && impact->touching_at_start && impact->start_distance == 0) {
+      if (!touch_at_rest(pair.motion)) add_touching(job, kind, pair, worker);
+      continue;
+    }
     add_contact(job, kind, pair, *impact, worker);
   }
 }
@@ -292,17 +311,16 @@ void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const Open
 void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker) {
   if (worker.earliest && !is_earlier(contact, job, worker.earliest->contact, worker.earliest->job)) return;
   worker.earliest = {contact, job};
-  search_until(contact.toi);
+  if (only_certain_ || !has_exact_limit()) shorten_search(job, contact.toi);
 }
 
 /// A reported time may be early by the tolerance. The pair with the earliest reported time may therefore
 /// touch later than another pair does.
-void ImpactPass::search_until(double time) {
-  // Which undecided pairs the search meets must not depend on the order in which threads find impacts.
-  if (has_exact_limit()) return;
-  const float until = round_up(time + toi_tolerance);
-  float latest = latest_.load(std::memory_order_relaxed);
-  while (until < latest && !latest_.compare_exchange_weak(latest, until, std::memory_order_relaxed)) {
+void ImpactPass::shorten_search(std::uint32_t job, double time) {
+  std::atomic<float>& bound = latest_of(job);
+  const float until = latest_true_time(time);
+  float latest = bound.load(std::memory_order_relaxed);
+  while (until < latest && !bound.compare_exchange_weak(latest, until, std::memory_order_relaxed)) {
   }
 }
 

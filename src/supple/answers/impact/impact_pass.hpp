@@ -58,6 +58,13 @@ struct ImpactWorker : PassWorker<ContinuousContact> {
     double time = 1;
     LimitingPair pair;
   };
+  /// Elements that share a point at the start and do not move together.
+  struct TouchingPair {
+    StepLimit limit;
+    bool is_turned = false;  ///< the first element of the motion is that of b
+    std::array<std::uint32_t, 4> vertices;
+    ElementMotion motion;
+  };
 
   RelativeMotionBlock block;
   std::array<OpenPair, RelativeMotionBlock::capacity> open;  // pairs of one block of candidates
@@ -68,17 +75,19 @@ struct ImpactWorker : PassWorker<ContinuousContact> {
   std::optional<Earliest> earliest;
   std::vector<StepLimit> limits;         // the first of the job of each task
   std::vector<std::uint32_t> near_jobs;  // with elements so near that rounded positions could touch
-  std::vector<Key> sorted;               // of the contacts of one job
+  std::vector<TouchingPair> touching;
+  std::vector<Key> sorted;  // of the contacts of one job
 
   void start() {
     earliest.reset();
     limits.clear();
     near_jobs.clear();
+    touching.clear();
   }
 };
 
 /// What the searches of all processes of one scene found first, from what the search of this one found; a
-/// step without a limit is nothing.
+/// step without a limit is nothing. It is stopped when one of them is.
 using FirstOfAll = std::function<SafeStep(const SafeStep&)>;
 
 /// Narrow phase and exact stage of continuous contacts for all jobs of a step, on all workers. The narrow
@@ -89,22 +98,20 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   /// when it was stopped; the lists are then not valid.
   bool run(const PassInput& input, std::span<const MovingObject> objects, const ImpactSearchOptions& options,
            StepStats& stats);
-  /// The contact with the earliest time; the first in canonical order among equal times. Does not change the
-  /// lists.
-  std::optional<ContinuousContact> find_earliest(std::span<const ContactJob> jobs,
+  /// The contact with the earliest time; the first in canonical order among equal times. Nothing when it was
+  /// stopped. Does not change the lists.
+  std::optional<ContinuousContact> find_earliest(const PassInput& input,
                                                  std::span<const MovingObject> objects,
-                                                 const ImpactSearchOptions& options,
-                                                 const Parallel& parallel);
-  /// See `Scene::collision_free_step`. Does not change the lists.
-  SafeStep find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                          const ImpactSearchOptions& options, const StepOptions& step,
-                          const FirstOfAll& first_of_all, const Parallel& parallel);
+                                                 const ImpactSearchOptions& options);
+  /// See `Scene::collision_free_step`, and `Scene::max_step` without `step`. With `first_of_all`, all
+  /// processes make the same calls of it. Does not change the lists.
+  SafeStep find_safe_step(const PassInput& input, std::span<const MovingObject> objects,
+                          const ImpactSearchOptions& options, const std::optional<StepOptions>& step,
+                          const FirstOfAll& first_of_all);
   /// See `Scene::collision_free_steps`. One step for each element of `objects`; those of no job have the step
   /// 1. Does not change the lists.
-  std::vector<ObjectStep> find_safe_steps(std::span<const ContactJob> jobs,
-                                          std::span<const MovingObject> objects,
-                                          const ImpactSearchOptions& options, const StepOptions& step,
-                                          const Parallel& parallel);
+  std::vector<ObjectStep> find_safe_steps(const PassInput& input, std::span<const MovingObject> objects,
+                                          const ImpactSearchOptions& options, const StepOptions& step);
 
   std::span<const ContinuousContact> contacts() const {
     return lists_first() ? first_contacts_.contacts() : records_;
@@ -120,22 +127,34 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   using OpenPair = ImpactWorker::OpenPair;
   using Earliest = ImpactWorker::Earliest;
   using StepLimit = ImpactWorker::StepLimit;
-  /// `touching`: the earliest contact without any separation. `safe_step`: the parts of the step that keep
-  /// distances. `free`: those that also keep them when both objects move by other parts. `rounded`: contacts
-  /// on the ways to the rounded positions at these parts.
-  enum class Search : std::uint8_t { all, earliest, touching, safe_step, free, rounded };
+  using TouchingPair = ImpactWorker::TouchingPair;
+  /// `longest`: the earliest contact of elements that do not part. `touching`: the same without any
+  /// separation. `safe_step`: the parts of the step that keep distances. `free`: those that also keep them
+  /// when both objects move by other parts. `rounded`: contacts on the ways to the rounded positions at these
+  /// parts. From `longest` on, elements that touch at the start do not count.
+  enum class Search : std::uint8_t { all, earliest, longest, touching, safe_step, free, rounded };
 
-  /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`, until a time in the step.
-  void search(Search search, std::span<const std::uint32_t> jobs, float until, const Parallel& parallel);
-  const Earliest* earliest_of_workers() const;
+  /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`, each until the time that `latest_`
+  /// has for it.
+  void search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel);
+  /// The same for all jobs until a time in the step.
+  void search_until(Search search, float until, const Parallel& parallel);
+  /// The earliest of `search`, one of `earliest`, `longest` and `touching`.
+  const Earliest* search_earliest(Search search, float until, const Parallel& parallel);
+  void start(const PassInput& input, std::span<const MovingObject> objects,
+             const ImpactSearchOptions& options);
   ImpactOptions impact_of_job(std::uint32_t job) const;
   /// The distance within which the pass searches, and what a safe step adds to it over the whole step: a
   /// share of the largest approach.
   double searched_distance(std::uint32_t job) const;
   double kept_distance(std::uint32_t job) const;
   double share_of_approach() const;
-  /// By how much rounding may bring two vertices of the job nearer in a safe step.
+  /// By how much rounding may bring two vertices of the job nearer in a part of a step: `rounding_of_job`
+  /// plus the part times `growth_of_rounding`.
   double rounding_of_job(std::uint32_t job) const;
+  double growth_of_rounding(std::uint32_t job) const;
+  /// What the distance within which the pass searches grows by over the whole step.
+  double growth_of_distance(std::uint32_t job) const;
   double largest_approach(std::uint32_t job) const;
   ObjectPairView view_of_job(std::uint32_t job) const;
   void run_task(std::size_t task, Worker& worker);
@@ -145,14 +164,26 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
                    std::array<std::uint32_t, 4> vertices) const;
   void decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count, Worker& worker);
   void limit_step(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, Worker& worker);
-  std::optional<double> limit_of(std::uint32_t job, const OpenPair& pair, Worker& worker);
+  std::optional<double> limit_of(std::uint32_t job, ElementPairKind kind, const OpenPair& pair,
+                                 Worker& worker);
   static bool limits_before(const StepLimit& p, const StepLimit& q);
-  void start_steps(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                   const ImpactSearchOptions& options, const StepOptions& step);
+  void start_steps(const PassInput& input, std::span<const MovingObject> objects,
+                   const ImpactSearchOptions& options, const std::optional<StepOptions>& step);
+  SafeStep find_step_until(double until, const FirstOfAll& first_of_all, const Parallel& parallel);
+  double first_part() const;
   void list_limits();
-  void join_islands();
+  void list_touching();
+  void add_touching(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, Worker& worker);
+  /// Adds the limits of the touching pairs of these jobs, which ascend: the start where they do not part, and
+  /// otherwise when they touch again. With `rounded`, `failing` is the limit of those that do not part or
+  /// touch again on the ways to the rounded positions.
+  void limit_touching(std::span<const std::uint32_t> jobs, bool rounded, double failing,
+                      const Parallel& parallel);
+  void search_islands(std::span<const std::uint32_t> jobs, const Parallel& parallel);
+  void limit_islands();
+  bool join_islands();
   void shorten(std::uint32_t island, const StepLimit& limit);
-  std::vector<std::uint32_t> near_jobs() const;
+  void list_near_jobs();
   void prove_rounded_positions(const Parallel& parallel);
   bool moves(std::uint32_t object) const;
   std::uint32_t island_of(std::uint32_t object) const;
@@ -161,7 +192,9 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   void add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, const Impact& impact,
                    Worker& worker);
   void keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker);
-  void search_until(double time);
+  void shorten_search(std::uint32_t job, double time);
+  std::atomic<float>& latest_of(std::uint32_t job) { return latest_[latest_of_job_[job]]; }
+  const std::atomic<float>& latest_of(std::uint32_t job) const { return latest_[latest_of_job_[job]]; }
   bool has_exact_limit() const { return options_.max_exact_bits < most_exact_bits; }
   /// Whether exact arithmetic may decide the pair.
   bool may_be_exact(const OpenPair& pair, double separation) const;
@@ -172,21 +205,27 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   void move_known() { outcomes_.move_known<0>(records_); }
   void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);
 
+  /// After so many attempts to reach rounded positions, elements that touch at the start end the step there.
+  static constexpr int most_rounds = 8;
+
   Search search_ = Search::all;
   ImpactSearchOptions options_;
-  StepOptions step_;
+  std::optional<StepOptions> step_;      // nothing for the longest step
   ImpactSearchOptions last_options_;     // of the last `run`
   std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
   // Safe steps: the first limit of each job, the free parts by job, and by object the islands as a forest.
   // Each object points to one of its island with a smaller index, or to itself; then it has the island's
   // step.
-  std::vector<StepLimit> limits_;
+  std::vector<StepLimit> limits_, all_limits_;
+  std::vector<TouchingPair> touching_;
+  std::vector<std::uint32_t> near_jobs_;
   std::vector<double> free_parts_;
   std::vector<std::uint32_t> island_;
   std::vector<SafeStep> safe_;
-  bool ends_early_ = false;  ///< the search needs no limits after the first
-  /// `find_earliest` skips pairs that cannot touch before this time.
-  std::atomic<float> latest_ = 1;
+  /// The search skips pairs that cannot touch before these times; and which of them is that of each job.
+  std::vector<std::atomic<float>> latest_ = std::vector<std::atomic<float>>(1);
+  std::vector<std::uint32_t> latest_of_job_;
+  bool only_certain_ = false;  ///< contacts that exact arithmetic could not decide do not count
   FirstContacts first_contacts_;
 };
 

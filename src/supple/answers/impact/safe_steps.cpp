@@ -15,6 +15,7 @@
 // their ways that they keep their distances at any parts.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <numeric>
@@ -27,112 +28,203 @@
 #include "contact/impact/safe_time.hpp"
 #include "core/float_rounding.hpp"
 #include "core/sort_once.hpp"
+#include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
 
-/// The part of a safe step that a time may be early, with some slack.
-constexpr double relative_tolerance = 0x1p-17;
-
-float end_of_search_for(double time) {
-  return std::min(1.0f, round_up(time * (1 + relative_tolerance) + toi_tolerance));
-}
-
-/// Where an island moves by this part, as users compute it. Ways that overflow take another formula.
-Vec3d rounded_position(const Vec3d& start, const Vec3d& end, double part) {
-  const Vec3d position = start + part * (end - start);
-  return is_finite(position) ? position : mix(start, end, part);
+/// The size of an object at the start, without what is not finite.
+double size_of(const MovingObject& object) {
+  Aabb box;
+  for (int child = 0; child < node_width && !object.view.nodes.empty(); ++child) {
+    if (const Aabb part = child_box(object.view.moving.start[0], child); !part.empty()) extend(box, part);
+  }
+  if (box.empty()) return 0;
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis) size = std::max(size, double{box.max[axis]} - double{box.min[axis]});
+  return size;
 }
 
 }  // namespace
 
-SafeStep ImpactPass::find_safe_step(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                                    const ImpactSearchOptions& options, const StepOptions& step,
-                                    const FirstOfAll& first_of_all, const Parallel& parallel) {
-  start_steps(jobs, objects, options, step);
-  ends_early_ = true;
-  island_.assign(objects.size(), 0);
-  safe_.assign(std::max<std::size_t>(objects.size(), 1), {});
+SafeStep ImpactPass::find_safe_step(const PassInput& input, std::span<const MovingObject> objects,
+                                    const ImpactSearchOptions& options,
+                                    const std::optional<StepOptions>& step, const FirstOfAll& first_of_all) {
+  start_steps(input, objects, options, step);
+  SafeStep known{0, {}, true};
+  // Processes would have to agree on the first part.
+  for (const double until : {first_of_all ? 1 : first_part(), 1.0}) {
+    const SafeStep found = find_step_until(until, first_of_all, input.parallel);
+    if (found.stopped) break;
+    if (found.limit || until == 1) return found;
+    known.step = until;
+  }
+  return known;
+}
+
+/// The safe step of all objects, no longer than `until`.
+SafeStep ImpactPass::find_step_until(double until, const FirstOfAll& first_of_all, const Parallel& parallel) {
+  const auto first = [&](SafeStep own) {
+    own.stopped = stop_.stop_requested();
+    return first_of_all ? first_of_all(own) : own;
+  };
+  island_.assign(objects_.size(), 0);
+  latest_of_job_.assign(jobs_.size(), 0);
+  touching_.clear();
+  near_jobs_.clear();
   // What touches bounds the step, and a short step needs little more than the separation.
-  search(Search::touching, all_jobs_, 1, parallel);
-  const Earliest* const earliest = earliest_of_workers();
-  const SafeStep touching = first_of_all(
-      earliest != nullptr ? SafeStep{earliest->contact.toi, pair_of_contact(earliest->contact)} : SafeStep{});
-  if (touching.step == 0) return touching;
-  search(Search::safe_step, all_jobs_, touching.limit ? end_of_search_for(touching.step) : 1, parallel);
+  const Earliest* const earliest =
+      search_earliest(step_ ? Search::touching : Search::longest, round_up(until), parallel);
+  list_touching();
+  limits_.clear();
+  limit_touching(all_jobs_, false, 0, parallel);
+  safe_.assign(1, {until, {}});
+  for (const StepLimit& limit : limits_) shorten(0, limit);
+  SafeStep contact = safe_[0];
+  if (earliest != nullptr && earliest->contact.toi < contact.step)
+    contact = {earliest->contact.toi, pair_of_contact(earliest->contact)};
+  contact = first(contact);
+  if (!step_ || contact.step == 0 || contact.stopped) return contact;
+  search_until(Search::safe_step, contact.limit ? latest_true_time(contact.step) : round_up(until), parallel);
+  list_near_jobs();
   list_limits();
   for (const StepLimit& limit : limits_) shorten(0, limit);
-  safe_[0] = first_of_all(safe_[0]);
-  const std::vector<std::uint32_t> open = near_jobs();
-  for (double factor = 1 - 0x1p-19; safe_[0].step > 0; factor = 0.5) {
-    search(Search::rounded, open, std::min(1.0f, round_up(safe_[0].step)), parallel);
+  safe_[0] = first(safe_[0]);
+  for (int round = 0; safe_[0].step > 0 && !safe_[0].stopped; ++round) {
+    latest_[0] = std::min(1.0f, round_up(safe_[0].step));
+    search(Search::rounded, near_jobs_, parallel);
     list_limits();
-    const SafeStep failing =
-        first_of_all(limits_.empty() ? SafeStep{} : SafeStep{limits_[0].time, limits_[0].pair});
-    if (!failing.limit) break;
-    safe_[0] = {factor * safe_[0].step, failing.limit};
+    limit_touching(near_jobs_, true, round < most_rounds ? 0.5 : 0, parallel);
+    const SafeStep failing = first(limits_.empty() ? SafeStep{} : SafeStep{limits_[0].time, limits_[0].pair});
+    if (!failing.limit && !failing.stopped) break;
+    safe_[0] = {(round == 0 ? 1 - 0x1p-19 : failing.step) * safe_[0].step, failing.limit, failing.stopped};
   }
   return safe_[0];
 }
 
-std::vector<ObjectStep> ImpactPass::find_safe_steps(std::span<const ContactJob> jobs,
+/// A part of the step in which nothing moves far, to be searched before the whole step: it is the safe part
+/// of a call that ends later. 1 where that is not worth the time.
+double ImpactPass::first_part() const {
+  constexpr double least = 0x1p-100, worth = 0x1p-6;
+  double part = 1;
+  for (const std::uint32_t job : all_jobs_) {
+    const MovingObject &a = objects_[jobs_[job].a], &b = objects_[jobs_[job].b];
+    const double faces = static_cast<double>(std::max(a.triangle_ids.size(), b.triangle_ids.size()));
+    const double size = std::max(size_of(a), size_of(b)) / std::sqrt(faces), approach = largest_approach(job);
+    if (approach > 0 && size > 0) part = std::min(part, size / approach);
+  }
+  return part < worth ? std::max(part, least) : 1;
+}
+
+std::vector<ObjectStep> ImpactPass::find_safe_steps(const PassInput& input,
                                                     std::span<const MovingObject> objects,
                                                     const ImpactSearchOptions& options,
-                                                    const StepOptions& step, const Parallel& parallel) {
-  start_steps(jobs, objects, options, step);
-  ends_early_ = false;
+                                                    const StepOptions& step) {
+  start_steps(input, objects, options, step);
+  double known = 0;
+  if (const double part = first_part(); part < 1) {
+    const SafeStep first = find_step_until(part, {}, input.parallel);
+    if (!first.stopped) known = first.step;
+  }
   island_.resize(objects.size());
   std::iota(island_.begin(), island_.end(), 0u);
   safe_.assign(objects.size(), {});
-  std::vector<std::uint32_t> jobs_of_two;
-  std::copy_if(all_jobs_.begin(), all_jobs_.end(), std::back_inserter(jobs_of_two),
-               [&](std::uint32_t job) { return is_between_islands(job); });
-  search(Search::free, jobs_of_two, 1, parallel);
+  if (const std::size_t count = std::max(objects.size(), jobs_.size()); latest_.size() < count)
+    latest_ = std::vector<std::atomic<float>>(count);
+  all_limits_.clear();
+  touching_.clear();
+  near_jobs_.clear();
+  std::vector<std::uint32_t> inside, between;
+  for (const std::uint32_t job : all_jobs_) (is_between_islands(job) ? between : inside).push_back(job);
+  search_islands(inside, input.parallel);
+  for (const std::uint32_t job : between) {
+    latest_of_job_[job] = job;
+    latest_[job] = latest_true_time(std::max(safe_[jobs_[job].a].step, safe_[jobs_[job].b].step));
+  }
+  search(Search::free, between, input.parallel);
   list_limits();
-  free_parts_.assign(jobs.size(), 1);
+  free_parts_.assign(jobs_.size(), 1);
   for (const StepLimit& limit : limits_) free_parts_[limit.job] = limit.time;
-  search(Search::safe_step, all_jobs_, 1, parallel);
-  list_limits();
-  join_islands();
-  prove_rounded_positions(parallel);
+  while (join_islands()) {
+    inside.clear();
+    std::erase_if(between, [&](std::uint32_t job) {
+      if (!is_between_islands(job)) inside.push_back(job);
+      return !is_between_islands(job);
+    });
+    limit_islands();
+    search_islands(inside, input.parallel);
+  }
+  prove_rounded_positions(input.parallel);
+  if (stop_.stop_requested()) {
+    // All that move are one island, of the first of them.
+    const auto first = std::find_if(objects.begin(), objects.end(), [](const MovingObject& object) {
+      return object.ways != nullptr && object.ways->longest > 0;
+    });
+    const auto root = static_cast<std::uint32_t>(first - objects.begin());
+    for (std::uint32_t object = 0; object < objects.size(); ++object)
+      island_[object] = objects[object].ways != nullptr && moves(object) ? root : object;
+    safe_.assign(objects.size(), {1, {}, true});
+    if (root < objects.size()) safe_[root].step = known;
+  }
   std::vector<ObjectStep> steps;
-  for (std::uint32_t object = 0; object < objects.size(); ++object)
+  for (std::uint32_t object = 0; object < objects.size(); ++object) {
+    if (objects[object].ways == nullptr) continue;  // a free slot
     steps.push_back({objects[object].id, objects[island_of(object)].id, safe_[island_of(object)]});
+  }
   return steps;
 }
 
-void ImpactPass::start_steps(std::span<const ContactJob> jobs, std::span<const MovingObject> objects,
-                             const ImpactSearchOptions& options, const StepOptions& step) {
-  begin(jobs, objects, {});
-  options_ = options;
+void ImpactPass::start_steps(const PassInput& input, std::span<const MovingObject> objects,
+                             const ImpactSearchOptions& options, const std::optional<StepOptions>& step) {
+  start(input, objects, options);
   step_ = step;
+  search_ = Search::touching;
   options_.impact.max_time = 1;
-  limit_.start(ContactLimit::unlimited, 0);
+  options_.impact.skip_parting = true;
   all_jobs_.clear();
-  for (std::uint32_t job = 0; job < jobs.size(); ++job) {
-    if (moves(jobs[job].a) || moves(jobs[job].b)) all_jobs_.push_back(job);
+  for (std::uint32_t job = 0; job < jobs_.size(); ++job) {
+    if (moves(jobs_[job].a) || moves(jobs_[job].b)) all_jobs_.push_back(job);
   }
 }
 
-/// Joins the islands of objects that are not free of each other.
-void ImpactPass::join_islands() {
-  for (bool has_joined = true; has_joined;) {
-    safe_.assign(objects_.size(), {});
-    for (const StepLimit& limit : limits_) {
-      if (!is_between_islands(limit.job)) shorten(island_of(mover_of(limit.job)), limit);
-    }
-    has_joined = false;
-    for (const std::uint32_t job : all_jobs_) {
-      if (!is_between_islands(job)) continue;
-      const std::uint32_t p = island_of(jobs_[job].a), q = island_of(jobs_[job].b);
-      if (std::max(safe_[p].step, safe_[q].step) <= free_parts_[job]) continue;
-      const auto [first, last] = std::minmax({p, q});
-      safe_[first].step = std::min(safe_[p].step, safe_[q].step);
-      island_[last] = first;
-      has_joined = true;
-    }
+/// Finds the limits of jobs within islands, up to the steps of these islands, and shortens them.
+void ImpactPass::search_islands(std::span<const std::uint32_t> jobs, const Parallel& parallel) {
+  for (const std::uint32_t job : jobs) {
+    latest_of_job_[job] = island_of(mover_of(job));
+    latest_of(job) = latest_true_time(safe_[latest_of_job_[job]].step);
   }
+  search(Search::safe_step, jobs, parallel);
+  list_near_jobs();
+  list_touching();
+  list_limits();
+  limit_touching(jobs, false, 0, parallel);
+  all_limits_.insert(all_limits_.end(), limits_.begin(), limits_.end());
+  std::sort(all_limits_.begin(), all_limits_.end(), limits_before);
+  limit_islands();
+}
+
+/// Gives islands the steps of their limits.
+void ImpactPass::limit_islands() {
+  safe_.assign(objects_.size(), {});
+  for (const StepLimit& limit : all_limits_) {
+    if (!is_between_islands(limit.job)) shorten(island_of(mover_of(limit.job)), limit);
+  }
+}
+
+/// Joins islands of objects that are not free of each other. Returns whether there are any.
+bool ImpactPass::join_islands() {
+  bool has_joined = false;
+  for (const std::uint32_t job : all_jobs_) {
+    if (!is_between_islands(job)) continue;
+    const std::uint32_t p = island_of(jobs_[job].a), q = island_of(jobs_[job].b);
+    if (std::max(safe_[p].step, safe_[q].step) <= free_parts_[job]) continue;
+    const auto [first, last] = std::minmax({p, q});
+    safe_[first].step = std::min(safe_[p].step, safe_[q].step);
+    island_[last] = first;
+    has_joined = true;
+  }
+  return has_joined;
 }
 
 std::uint32_t ImpactPass::island_of(std::uint32_t object) const {
@@ -157,45 +249,49 @@ void ImpactPass::shorten(std::uint32_t island, const StepLimit& limit) {
   if (limit.time < safe_[island].step) safe_[island] = {limit.time, limit.pair};
 }
 
-/// The jobs of elements that are so near that rounding could make them touch.
-std::vector<std::uint32_t> ImpactPass::near_jobs() const {
-  std::vector<std::uint32_t> near;
+/// Adds the jobs of elements that are so near that rounding could make them touch, and of those that touch.
+void ImpactPass::list_near_jobs() {
   for (const Worker& worker : workers_)
-    near.insert(near.end(), worker.near_jobs.begin(), worker.near_jobs.end());
-  sort_once(near);
-  return near;
+    near_jobs_.insert(near_jobs_.end(), worker.near_jobs.begin(), worker.near_jobs.end());
+  sort_once(near_jobs_);
 }
 
 /// Shortens the parts of islands until the positions that they round to are reached without contact.
 void ImpactPass::prove_rounded_positions(const Parallel& parallel) {
-  std::vector<std::uint32_t> open = near_jobs();
+  std::vector<std::uint32_t> open = near_jobs_;
   std::erase_if(open, [&](std::uint32_t job) { return is_between_islands(job); });
   const auto safe_of = [&](std::uint32_t job) -> SafeStep& { return safe_[island_of(mover_of(job))]; };
   std::vector<std::uint8_t> is_shorter(safe_.size(), 0), fails(safe_.size(), 1);
-  for (;;) {
+  for (int round = 0;; ++round) {
     std::erase_if(open, [&](std::uint32_t job) {
       return fails[island_of(mover_of(job))] == 0 || safe_of(job).step == 0;
     });
     if (open.empty()) return;
-    double latest = 0;
-    for (const std::uint32_t job : open) latest = std::max(latest, safe_of(job).step);
-    search(Search::rounded, open, std::min(1.0f, round_up(latest)), parallel);
+    for (const std::uint32_t job : open) {
+      latest_of_job_[job] = island_of(mover_of(job));
+      latest_of(job) = std::min(1.0f, round_up(safe_of(job).step));
+    }
+    search(Search::rounded, open, parallel);
     list_limits();
+    limit_touching(open, true, round < most_rounds ? 0.5 : 0, parallel);
     std::fill(fails.begin(), fails.end(), std::uint8_t{0});
     for (const StepLimit& limit : limits_) {
       const std::uint32_t island = island_of(mover_of(limit.job));
       if (std::exchange(fails[island], std::uint8_t{1}) != 0) continue;
-      const double factor = std::exchange(is_shorter[island], std::uint8_t{1}) != 0 ? 0.5 : 1 - 0x1p-19;
+      const double factor =
+          std::exchange(is_shorter[island], std::uint8_t{1}) != 0 ? limit.time : 1 - 0x1p-19;
       safe_[island] = {factor * safe_[island].step, limit.pair};
     }
   }
 }
 
-/// What the pair leaves of the step in this search; nothing when that is all.
-std::optional<double> ImpactPass::limit_of(std::uint32_t job, const OpenPair& pair, Worker& worker) {
-  const KeptDistance kept{impact_of_job(job).min_separation, step_.keep};
+/// What the pair leaves of the step in this search; nothing when that is all, and for pairs that touch at the
+/// start.
+std::optional<double> ImpactPass::limit_of(std::uint32_t job, ElementPairKind kind, const OpenPair& pair,
+                                           Worker& worker) {
+  const KeptDistance kept{impact_of_job(job).min_separation, step_->keep};
   if (search_ == Search::free) {
-    const double part = free_part(pair.motion, kept, rounding_of_job(job));
+    const double part = free_part(pair.motion, kept, rounding_of_job(job), growth_of_rounding(job));
     return part < 1 ? std::optional(part) : std::nullopt;
   }
   if (search_ == Search::rounded) {
@@ -208,20 +304,21 @@ std::optional<double> ImpactPass::limit_of(std::uint32_t job, const OpenPair& pa
     options.exact = may_be_exact(pair, 0);
     bool used_exact = false;
     const auto impact = first_impact_after(search_impact(relative, 0), motion, relative, options, used_exact);
-    if (!impact || (impact->touching_at_start && touch_at_rest(pair.motion))) return {};
-    return 0;
+    return impact && !impact->touching_at_start ? std::optional(0.5) : std::nullopt;
   }
-  const double latest = has_exact_limit() ? 1 : latest_.load(std::memory_order_relaxed);
+  const double until = latest_of(job).load(std::memory_order_relaxed), latest = has_exact_limit() ? 1 : until;
   const SafeTime found = safe_time(pair.motion, kept, latest, may_be_exact(pair, kept.separation));
   worker.stats.exact_fallbacks += found.used_exact ? 1 : 0;
-  const bool is_near = !(found.least_distance > rounding_of_job(job));
+  if (found.touches) add_touching(job, kind, pair, worker);
+  const bool is_near =
+      found.touches || !(found.least_distance > rounding_of_job(job) + until * growth_of_rounding(job));
   if (is_near && (worker.near_jobs.empty() || worker.near_jobs.back() != job))
     worker.near_jobs.push_back(job);
   return found.time;
 }
 
 void ImpactPass::limit_step(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, Worker& worker) {
-  const std::optional<double> time = limit_of(job, pair, worker);
+  const std::optional<double> time = limit_of(job, kind, pair, worker);
   if (!time) return;
   const std::optional<ElementNames> names =
       names_of(kind, pair.candidate, pair.vertices, objects_[jobs_[job].a], objects_[jobs_[job].b]);
@@ -235,7 +332,7 @@ void ImpactPass::limit_step(std::uint32_t job, ElementPairKind kind, const OpenP
   } else {
     return;
   }
-  if (ends_early_ && search_ == Search::safe_step) search_until(*time * (1 + relative_tolerance));
+  if (search_ != Search::rounded && !has_exact_limit()) shorten_search(job, *time);
 }
 
 /// The order of limits: by job, then by time.
@@ -269,6 +366,14 @@ double ImpactPass::rounding_of_job(std::uint32_t job) const {
   return safe_step_rounding * std::max(objects_[jobs_[job].a].ways->largest_coordinate,
                                        objects_[jobs_[job].b].ways->largest_coordinate);
 }
+double ImpactPass::growth_of_rounding(std::uint32_t job) const {
+  return safe_step_rounding *
+         std::max(objects_[jobs_[job].a].ways->longest, objects_[jobs_[job].b].ways->longest);
+}
+double ImpactPass::growth_of_distance(std::uint32_t job) const {
+  if (search_ == Search::free) return 2 * growth_of_rounding(job) / (1 - step_->keep) * (1 + 0x1p-40);
+  return search_ == Search::safe_step || search_ == Search::rounded ? growth_of_rounding(job) : 0;
+}
 
 double ImpactPass::searched_distance(std::uint32_t job) const {
   const double separation = impact_of_job(job).min_separation;
@@ -277,7 +382,7 @@ double ImpactPass::searched_distance(std::uint32_t job) const {
     case Search::rounded:
       return separation + rounding_of_job(job);
     case Search::free:
-      return separation + 2 * rounding_of_job(job) / (1 - step_.keep) * (1 + 0x1p-40);
+      return separation + 2 * rounding_of_job(job) / (1 - step_->keep) * (1 + 0x1p-40);
     default:
       return separation;
   }
@@ -287,8 +392,8 @@ double ImpactPass::searched_distance(std::uint32_t job) const {
 /// distance beyond it only if that distance was at most approach / (1 - keep). At the start they are then
 /// that near, and at this time within keep / (1 - keep) of the approach.
 double ImpactPass::share_of_approach() const {
-  if (search_ == Search::safe_step) return kept_share(step_);
-  return search_ == Search::free ? (1 + 0x1p-40) / (1 - step_.keep) : 0;
+  if (search_ == Search::safe_step) return kept_share(*step_);
+  return search_ == Search::free ? (1 + 0x1p-40) / (1 - step_->keep) : 0;
 }
 
 double ImpactPass::kept_distance(std::uint32_t job) const {

@@ -1,8 +1,17 @@
 #include "answers/impact/step_search.hpp"
 
+#include <chrono>
+#include <string>
+
+#include "core/error.hpp"
 #include "octree/volumes/way_boxes.hpp"
 
 namespace supple {
+
+void check_limits(const StepLimits& limits, const char* call) {
+  if (!(limits.seconds >= 0))
+    fail(std::string(call) + ": seconds is " + std::to_string(limits.seconds) + "; it must be at least 0");
+}
 
 void StepSearch::prepare(const Question& question) {
   world_.refit(question.shapes());
@@ -12,12 +21,26 @@ void StepSearch::prepare(const Question& question) {
   list_moving_objects(world_, MovingShape::Part::way, objects_);
 }
 
-std::optional<ContinuousContact> StepSearch::earliest_impact(const ImpactSearchOptions& options) {
-  prepare({.contacts = ContactKinds::continuous, .impact = options});
-  return pass_.find_earliest(pairs_.jobs(), objects_, options, world_.parallel);
+/// What the pass reads; the time of the call begins here.
+PassInput StepSearch::input(const StepLimits& limits) const {
+  PassInput input{
+      .jobs = pairs_.jobs(), .versions = {}, .stop = stop_of(limits), .parallel = world_.parallel};
+  constexpr double longest = 1e9;  // some decades
+  if (limits.seconds < longest) {
+    const std::chrono::duration<double> time(limits.seconds);
+    input.stop.end_at(StopSignal::Clock::now() +
+                      std::chrono::duration_cast<StopSignal::Clock::duration>(time));
+  }
+  return input;
 }
 
-void StepSearch::prepare_safe_step(const ImpactSearchOptions& options, const StepOptions& step) {
+std::optional<ContinuousContact> StepSearch::earliest_impact(const ImpactSearchOptions& options,
+                                                             const StepLimits& limits) {
+  prepare({.contacts = ContactKinds::continuous, .impact = options});
+  return pass_.find_earliest(input(limits), objects_, options);
+}
+
+void StepSearch::prepare_step(const ImpactSearchOptions& options, const std::optional<StepOptions>& step) {
   ways_.resize(world_.slot_count());
   ways_of_nodes_.resize(world_.slot_count());
   for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
@@ -29,24 +52,23 @@ void StepSearch::prepare_safe_step(const ImpactSearchOptions& options, const Ste
     if (object == nullptr) continue;
     MovingObject& listed = objects_[slot];
     listed.ways = &ways_[slot];
-    if (!object->placement().has_motion()) continue;
+    if (!step || !object->placement().has_motion()) continue;
     set_way_boxes(object->octree(), object->moving().elements(), *listed.start, *listed.end,
                   ways_of_nodes_[slot]);
     listed.view.ways = ways_of_nodes_[slot].data();
   }
 }
 
-SafeStep StepSearch::safe_step(const ImpactSearchOptions& options, const StepOptions& step,
-                               const FirstOfAll& first_of_all) {
-  prepare_safe_step(options, step);
-  return pass_.find_safe_step(pairs_.jobs(), objects_, options, step, first_of_all, world_.parallel);
+SafeStep StepSearch::safe_step(const ImpactSearchOptions& options, const std::optional<StepOptions>& step,
+                               const StepLimits& limits, const FirstOfAll& first_of_all) {
+  prepare_step(options, step);
+  return pass_.find_safe_step(input(limits), objects_, options, step, first_of_all);
 }
 
 std::span<const ObjectStep> StepSearch::safe_steps(const ImpactSearchOptions& options,
-                                                   const StepOptions& step) {
-  prepare_safe_step(options, step);
-  steps_ = pass_.find_safe_steps(pairs_.jobs(), objects_, options, step, world_.parallel);
-  std::erase_if(steps_, [&](const ObjectStep& found) { return !world_.contains(found.object); });
+                                                   const StepOptions& step, const StepLimits& limits) {
+  prepare_step(options, step);
+  steps_ = pass_.find_safe_steps(input(limits), objects_, options, step);
   return steps_;
 }
 

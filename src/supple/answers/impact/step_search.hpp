@@ -12,21 +12,28 @@
 
 namespace supple {
 
+/// Throws an error that names `call` when a limit is out of its range.
+void check_limits(const StepLimits& limits, const char* call);
+
 /// Searches of a world for the earliest impact and for safe steps. It keeps its memory between searches.
 class StepSearch {
  public:
-  explicit StepSearch(World& world) : world_(world), pairs_(world) {}
+  /// Islands are those of boxes for all volumes.
+  explicit StepSearch(World& world) : world_(world), pairs_(world, BoundingVolume::aabb) {}
 
-  std::optional<ContinuousContact> earliest_impact(const ImpactSearchOptions& options);
-  SafeStep safe_step(
-      const ImpactSearchOptions& options, const StepOptions& step,
-      const FirstOfAll& first_of_all = [](const SafeStep& found) { return found; });
+  std::optional<ContinuousContact> earliest_impact(const ImpactSearchOptions& options,
+                                                   const StepLimits& limits);
+  /// The longest step without `step`.
+  SafeStep safe_step(const ImpactSearchOptions& options, const std::optional<StepOptions>& step,
+                     const StepLimits& limits, const FirstOfAll& first_of_all = {});
   /// Ascending by object. The span is valid until the next call.
-  std::span<const ObjectStep> safe_steps(const ImpactSearchOptions& options, const StepOptions& step);
+  std::span<const ObjectStep> safe_steps(const ImpactSearchOptions& options, const StepOptions& step,
+                                         const StepLimits& limits);
 
  private:
   void prepare(const Question& question);
-  void prepare_safe_step(const ImpactSearchOptions& options, const StepOptions& step);
+  void prepare_step(const ImpactSearchOptions& options, const std::optional<StepOptions>& step);
+  PassInput input(const StepLimits& limits) const;
 
   World& world_;
   ObjectPairs pairs_;

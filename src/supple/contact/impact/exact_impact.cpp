@@ -31,7 +31,9 @@ class FirstContact {
   using Volume = typename Numbers::Volume;
   using Vertices = std::array<std::array<Length, 3>, 8>;  ///< at the start, and then at the end
 
-  FirstContact(bool are_edges, const Vertices& vertices) : are_edges_(are_edges), vertices_(vertices) {}
+  /// With `after_start`, only times after the start count, and none when the vertices stay in one plane.
+  FirstContact(bool are_edges, const Vertices& vertices, bool after_start)
+      : are_edges_(are_edges), after_start_(after_start), vertices_(vertices) {}
 
   /// Returns false when the integers are too short.
   bool search();
@@ -76,7 +78,7 @@ class FirstContact {
   static AreaVector cross(const MovingVector& a, const MovingVector& b);
   static Cubic<Volume> dot(const MovingVector& a, const AreaVector& b);
 
-  bool are_edges_;
+  bool are_edges_, after_start_;
   Vertices vertices_;
   AreaVector normal_;
   std::array<AreaVector, 4> conditions_;  ///< do not point against the normal where the elements touch
@@ -122,7 +124,7 @@ bool FirstContact<Numbers>::search() {
   if (apart_throughout()) return true;
   if (!all_zero(volume)) {
     consider_roots(volume, {});
-  } else {
+  } else if (!after_start_) {
     search_in_one_plane();
   }
   return !exhausted_;
@@ -207,6 +209,7 @@ void FirstContact<Numbers>::consider(Root root, const Definition& definition) {
   const TimeInterval<Numbers>& interval = root.interval;
   if (first_ && round_time(interval.low, interval.exponent, false) >= first_->high) return;
   const TimeBracket bracket = neighbouring_doubles(root);
+  if (after_start_ && bracket.high == 0) return;
   const bool earlier = !first_ || bracket.low < first_->low || bracket.high < first_->high;
   if (earlier && touch(root, definition)) first_ = bracket;
   exhausted_ = exhausted_ || root.too_fine;
@@ -285,22 +288,20 @@ using Coordinates = std::array<std::array<double, 8>, 3>;
 /// Returns false when the integers are too short.
 template <class Numbers>
 bool search_with(bool are_edges, const Coordinates& coordinates, const std::array<int, 3>& lowest,
-                 std::optional<TimeBracket>& first) {
+                 bool after_start, std::optional<TimeBracket>& first) {
   typename FirstContact<Numbers>::Vertices vertices;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < 8; ++i) {
       vertices[i][axis] = to_integer<typename Numbers::Length>(coordinates[axis][i], lowest[axis]);
     }
   }
-  FirstContact<Numbers> contact(are_edges, vertices);
+  FirstContact<Numbers> contact(are_edges, vertices, after_start);
   const bool decided = contact.search();
   first = contact.first();
   return decided;
 }
 
-}  // namespace
-
-std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion) {
+std::optional<TimeBracket> search_contact(const ElementMotion& motion, bool after_start) {
   Coordinates coordinates;
   std::array<int, 3> lowest;
   int widest = 0;
@@ -317,11 +318,21 @@ std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion) {
   }
   std::optional<TimeBracket> first;
   const bool edges = motion.are_edges;
-  const bool decided = widest <= 60
-                           ? search_with<FixedNumbers<1>>(edges, coordinates, lowest, first)
-                           : widest <= 124 && search_with<FixedNumbers<2>>(edges, coordinates, lowest, first);
-  if (!decided) search_with<UnboundedNumbers>(edges, coordinates, lowest, first);
+  const bool decided =
+      widest <= 60
+          ? search_with<FixedNumbers<1>>(edges, coordinates, lowest, after_start, first)
+          : widest <= 124 && search_with<FixedNumbers<2>>(edges, coordinates, lowest, after_start, first);
+  if (!decided) search_with<UnboundedNumbers>(edges, coordinates, lowest, after_start, first);
   return first;
+}
+
+}  // namespace
+
+std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion) {
+  return search_contact(motion, false);
+}
+std::optional<TimeBracket> exact_next_contact(const ElementMotion& motion) {
+  return search_contact(motion, true);
 }
 
 }  // namespace supple

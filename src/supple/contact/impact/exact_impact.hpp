@@ -16,6 +16,10 @@ namespace supple {
 /// times as large as others. docs/conventions.md has a table.
 std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion);
 
+/// For elements that touch at the start: the first time after it at which they touch again. Nothing when they
+/// do not, and when their four vertices stay in one plane.
+std::optional<TimeBracket> exact_next_contact(const ElementMotion& motion);
+
 /// The first time at which two elements are at a distance of at most `separation` > 0. All numbers are
 /// finite. Takes tens to hundreds of microseconds, and some milliseconds where coordinates range from 1e-300
 /// to 1e300.

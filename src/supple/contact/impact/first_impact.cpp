@@ -252,6 +252,11 @@ float end_of_search(const ImpactOptions& options) {
   return std::min(1.0f, round_up(options.max_time + toi_tolerance));
 }
 
+float latest_true_time(double time) {
+  constexpr double relative_tolerance = 0x1p-17;  // of safe steps, with some slack
+  return std::min(1.0f, round_up(time * (1 + relative_tolerance) + std::numeric_limits<double>::min()));
+}
+
 std::optional<Impact> first_impact_after(const ImpactSearch& search, const ElementMotion& motion,
                                          const RelativeMotion& relative, const ImpactOptions& options,
                                          bool& used_exact) {

@@ -14,6 +14,9 @@ namespace supple {
 /// reported time may be early.
 float end_of_search(const ImpactOptions& options);
 
+/// A bound of the true times of contacts that are reported, or that end safe steps, at this time or before.
+float latest_true_time(double time);
+
 /// The elements at one end of a motion.
 ElementPoints element_points(const std::array<Vec3d, 4>& points, bool are_edges);
 

@@ -199,6 +199,18 @@ Outcome advance(const RelativeMotion& motion, double separation, double& time) {
   return Outcome::unsure;
 }
 
+/// The part of a step in which elements move by a few times their size, a power of two; 1 when the whole step
+/// is not many times longer. Error bounds are relative to the longest vectors, so those of a part are
+/// tighter. Its end has three more roundings, for which the bounds of `advance` have room.
+double wild_part(const RelativeMotion& motion) {
+  const auto& [start, end, is_square] = motion;
+  const double size = largest_magnitude(start.m) + largest_magnitude(start.u) + largest_magnitude(start.w);
+  const double reach = largest_magnitude(reach_of(motion));
+  constexpr double wild = 0x1p6, longest = 0x1p100;
+  if (!(reach > wild * size) || !(reach < longest * size)) return 1;
+  return std::ldexp(1.0, 2 - std::ilogb(reach / size));
+}
+
 }  // namespace
 
 RelativePlaces<double> places_at(const RelativeMotion& motion, double time) {
@@ -209,7 +221,11 @@ RelativePlaces<double> places_at(const RelativeMotion& motion, double time) {
 /// No difference is shorter than its component along the closest direction, whose roundings are those of
 /// `apart_between`.
 DistanceBounds distance_bounds(const RelativeMotion& motion, double time) {
-  const Vec3d reach = reach_of(motion);
+  const auto& [start, end, is_square] = motion;
+  const auto size = [](const RelativePlaces<double>& places) {
+    return absolute(places.m) + absolute(places.u) + absolute(places.w);
+  };
+  const Vec3d reach = mix(size(start), size(end), time);
   const Moment moment(motion, time);
   const Vec3d& n = moment.closest.difference;
   const std::array<double, 4> along = corners_along(n, moment.places);
@@ -224,6 +240,12 @@ ImpactSearch search_impact(const RelativeMotion& motion, double separation) {
   if (separation == 0) {
     search.outcome = search_coplanar_times(motion, search.time);
     if (search.outcome != Outcome::unsure) return search;
+  }
+  const double part = wild_part(motion);
+  if (part < 1) {
+    search.outcome = advance(part_of_motion(motion, static_cast<float>(part)), separation, search.time);
+    search.time *= part;
+    if (search.outcome != Outcome::apart) return search;
   }
   search.outcome = advance(motion, separation, search.time);
   return search;

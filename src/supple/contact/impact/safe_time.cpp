@@ -121,12 +121,12 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
   const DistanceBounds start = distance_bounds(relative, 0);
   if (start.low == 0 && are_within(motion, 0)) {
     constexpr double any = std::numeric_limits<double>::infinity();
-    return {touch_at_rest(motion) ? std::nullopt : std::optional(0.0), any, false};
+    return {{}, any, false, !touch_at_rest(motion)};
   }
   const bool beyond = is_beyond(start, scaled, motion, kept);
   const KeptBounds least = kept_bounds(start, scaled.kept, beyond);
   const double approach = largest_approach(scaled.motion);
-  SafeTime result{{}, std::max(least.low, start.low - approach) / scaled.factor, false};
+  SafeTime result{{}, std::max(least.low, start.low - approach) / scaled.factor, false, false};
   if (approach < least_room(start, scaled.kept, beyond)) return result;
   const ImpactSearch search = search_impact(relative, least.high);
   if (search.outcome == ImpactSearch::Outcome::apart) return result;
@@ -140,7 +140,7 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
 
 /// Along the direction between the closest points at the start, the elements come nearer by at most the sum
 /// of what each moves towards the other.
-double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding) {
+double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding, double growth) {
   const ScaledMotion scaled(motion, kept);
   const DistanceBounds start = distance_bounds(relative_motion(scaled.motion), 0);
   const std::array<Vec3d, 4> ways = ways_of(scaled.motion);
@@ -150,7 +150,8 @@ double free_part(const ElementMotion& motion, const KeptDistance& kept, double r
     double& most = is_of_a ? most_a : most_b;
     most = std::max(most, dot(is_of_a ? -1.0 * ways[i] : ways[i], start.direction));
   }
-  const double approach = (most_a + most_b) * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways);
+  const double approach =
+      (most_a + most_b) * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways) + 2 * growth * scaled.factor;
   const double room =
       least_room(start, scaled.kept, is_beyond(start, scaled, motion, kept)) - 2 * rounding * scaled.factor;
   return approach > 0 ? std::clamp(room / approach * (1 - 0x1p-40), 0.0, 1.0) : 1;

@@ -15,20 +15,21 @@ struct SafeTime {
   /// Never later than the first time at which the elements are at the distance that they keep, and earlier by
   /// at most 2^-18 of it; nothing when they are farther apart in the whole step.
   std::optional<double> time;
-  /// A lower bound of their distance up to `time`, or in the whole step; infinite for elements that touch at
-  /// the start.
+  /// A lower bound of their distance up to `time`, or in the whole step.
   double least_distance = 0;
   bool used_exact = false;
+  /// The elements touch at the start and do not move together. The start is no time that limits the step:
+  /// `part_after_start` decides that.
+  bool touches = false;
 };
 
-/// Elements that touch at the start do not limit the step when they `touch_at_rest`; otherwise the time is 0.
-/// `motion` is finite. Without `exact` the time may be earlier, and there may be one when there is none. A
-/// time after `latest` may be early, too.
+/// Elements that touch at the start have no time. `motion` is finite. Without `exact` the time may be
+/// earlier, and there may be one when there is none. A time after `latest` may be early, too.
 SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double latest, bool exact);
 
 /// A part, 0 to 1, up to which two elements surely keep their distance when they move by any two parts of
-/// their ways. They then also stay farther apart than `rounding`.
-double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding);
+/// their ways. They then also stay farther apart than `rounding` plus the part times `growth`.
+double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding, double growth);
 
 /// A bound of the most by which two vertices of a pair come nearer.
 double largest_approach(const ElementMotion& motion);

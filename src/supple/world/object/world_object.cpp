@@ -93,8 +93,8 @@ VertexWays WorldObject::ways(const Parallel& parallel) const {
       const Vec3d d = way(v), rest = d - all.mean;
       part.longest = std::max(part.longest, scaled_norm(d));
       part.farthest_from_mean = std::max(part.farthest_from_mean, scaled_norm(rest));
-      part.largest_coordinate = std::max({part.largest_coordinate, largest_magnitude(placement_.position(v)),
-                                          largest_magnitude(placement_.start_position(v))});
+      part.largest_coordinate =
+          std::max(part.largest_coordinate, largest_magnitude(placement_.start_position(v)));
     }
   });
   for (const VertexWays& part : parts) {
