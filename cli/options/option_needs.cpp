@@ -41,7 +41,6 @@ constexpr OptionNeed needs[] = {
     {"max_time", has_continuous, "contacts", "continuous"},
     {"skip_parting", has_continuous, "contacts", "continuous"},
     {"continuous_listing", has_continuous, "contacts", "continuous"},
-    {"depths", has_penetration, "contacts", "penetration"},
     {"element_kinds", [](const SceneOptions& scene) { return has_continuous(scene) || has_proximity(scene); },
      "contacts", "continuous or proximity"},
     {"proximity_listing", has_proximity, "contacts", "proximity"},

@@ -164,10 +164,8 @@ void TextReport::print_penetrations() const {
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
     return x.second.vertices != y.second.vertices ? x.second.vertices > y.second.vertices : x.first < y.first;
   });
-  const bool lists_all = input_.simulation.scene.depths == PenetrationDepths::all;
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", "object", "is inside", "frames",
-             lists_all ? "vertices inside" : "vertices listed", "largest depth", "in frame",
-             "frames, wholly");
+             "vertices inside", "largest depth", "in frame", "frames, wholly");
   for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
     const auto& [pair, inside] = rows[i];
     fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", name_of(input_, pair.a),

@@ -39,8 +39,8 @@ DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const c
       throw nb::type_error(
           (std::string(where) + ": there is no option '" + keyword +
            "'; the options are contacts, those of continuous contacts (supple.options"
-           "('ImpactOptions')), proximity_listing, element_kinds, continuous_listing, manifolds, "
-           "depths and max_contacts")
+           "('ImpactOptions')), proximity_listing, element_kinds, continuous_listing, "
+           "manifolds and max_contacts")
               .c_str());
     }
     if (keyword == "contacts")
@@ -53,8 +53,6 @@ DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const c
       request.continuous_listing = options.continuous_listing;
     else if (keyword == "manifolds")
       request.manifolds = options.manifolds;
-    else if (keyword == "depths")
-      request.depths = options.depths;
     else if (ImpactOptions impact; keyword == "impact" || set_option(impact, keyword, value, where))
       request.impact = options.impact;
     else

@@ -126,7 +126,6 @@ __all__ = [
     "Option",
     "PairContacts",
     "PairStage",
-    "PenetrationDepths",
     "PenetrationDifferenceFault",
     "ProximityDifferenceFault",
     "ProximityListing",

@@ -16,8 +16,7 @@ Question question_of(const DetectRequest& request, const SceneOptions& options) 
       .contact_points = options.contact_points,
       .colliding_vertices = options.comparison.colliding_vertices,
       .lazy_refit = options.comparison.lazy_refit,
-      .manifolds = request.manifolds.value_or(options.manifolds),
-      .depths = request.depths.value_or(options.depths)};
+      .manifolds = request.manifolds.value_or(options.manifolds)};
   if (request.manifolds.value_or(false) && !question.has_penetration() && !question.has_proximity())
     fail("detect: manifolds are made from penetration or proximity; request one of these contacts");
   if (question.has_penetration() && request.max_contacts != DetectRequest{}.max_contacts)

@@ -245,7 +245,6 @@ class CollisionManager:
             # They do not touch, so one is inside the other or they are apart.
             search = self._scene.search(
                 contacts="penetration",
-                depths="deepest",
                 only=lambda a, b: frozenset((a.index, b.index)) in others,
             )
             parts = search.contained_parts
@@ -259,7 +258,6 @@ class CollisionManager:
         wanted = {frozenset((a.added.index, b.added.index)) for a, b in overlapping}
         found = self._scene.search(
             contacts="penetration",
-            depths="deepest",
             only=lambda a, b: frozenset((a.index, b.index)) in wanted,
         )
         contacts, points = found.contacts, found.contact_points["position"]

@@ -41,8 +41,7 @@ struct PenetratedObject {
 class PenetrationPass {
  public:
   /// `result` has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
-  bool run(const PassInput& input, std::span<const PenetratedObject> objects, const DetectResult& result,
-           PenetrationDepths depths);
+  bool run(const PassInput& input, std::span<const PenetratedObject> objects, const DetectResult& result);
 
   std::span<const PenetrationGroup> groups() const { return groups_; }
   std::span<const Penetration> penetrations() const { return penetrations_; }
@@ -106,7 +105,6 @@ class PenetrationPass {
   void run_task(const Task& task, const DetectResult& result, Worker& worker) const;
   static std::array<std::uint32_t, list_count> sizes_of(const Worker& worker);
   void find_inside(const Task& task, const DetectResult& result, Worker& worker) const;
-  void keep_deepest(const Task& task, std::size_t first_inside, Worker& worker) const;
   void collect_touched(const Task& task, const DetectResult& result, Worker& worker) const;
   void gather();
   void move_known_curves(std::size_t i);
@@ -116,7 +114,6 @@ class PenetrationPass {
   void find_depths(std::size_t begin, std::size_t end, Worker& worker);
 
   std::span<const PenetratedObject> objects_;
-  PenetrationDepths depths_ = PenetrationDepths::all;
   std::vector<Worker> workers_;
   std::vector<ContactJob> pairs_;  // inner and outer object, ascending
   std::vector<ContactTask> tasks_;
