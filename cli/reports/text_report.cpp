@@ -249,6 +249,7 @@ void TextReport::print_stages() const {
     row("penetration", sum_.penetration_seconds,
         fmt::format("{} inside, {}", counted(sum_.penetrations, "vertex", "vertices"),
                     counted(sum_.curves, "curve")));
+  if (input_.simulation.scene.manifolds) row("manifolds", sum_.manifold_seconds, "");
   row("sort, events", sum_.sort_and_events_seconds, "");
   row("total", total_seconds, "");
 }
