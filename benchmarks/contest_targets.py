@@ -169,6 +169,10 @@ def judged(cells):
         values = judge.cells[cell]["values"]
         judge.add("99.9th percentile of frames", cell, "median",
                   values["milliseconds, 99.9th percentile"] / values["milliseconds, median"], 2, 1.3, True)
+    for cell in judge.matching("game/.*"):
+        values = judge.cells[cell]["values"]
+        judge.add("manifolds", cell, "a plain loop",
+                  values["milliseconds of manifolds"] / values["milliseconds of a plain loop"], 1.5, 1, True)
     for cell in judge.matching("process/.*"):
         judge.add_faster("whole process supple detect", cell, ["CGAL"], 2, 4)
     for cell in judge.matching("threads/.*"):

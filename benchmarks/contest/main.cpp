@@ -22,6 +22,7 @@ constexpr const char* usage =
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
     "limits/refit/TRIANGLES  "
     "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  frames/SHAPExCOPIES  first/SHAPExCOPIES  first/CLOTH\n"
+    "      game/penetration  game/proximity\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
     "crumpled passing rods\n"
     "SET: avx512 avx2 sse4, for Supple and Embree\n";
@@ -71,6 +72,8 @@ void run(const Choice& choice) {
     run_build(choice, after("build/"), output);
   } else if (cell.starts_with("first/")) {
     run_first_frame(choice, after("first/"), output);
+  } else if (cell.starts_with("game/")) {
+    run_game(choice, after("game/"), output);
   } else if (cell.starts_with("frames/")) {
     run_frames(choice, after("frames/"), output);
   } else {

@@ -164,10 +164,8 @@ void TextReport::print_penetrations() const {
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
     return x.second.vertices != y.second.vertices ? x.second.vertices > y.second.vertices : x.first < y.first;
   });
-  const bool lists_all = input_.simulation.scene.depths == PenetrationDepths::all;
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", "object", "is inside", "frames",
-             lists_all ? "vertices inside" : "vertices listed", "largest depth", "in frame",
-             "frames, wholly");
+             "vertices inside", "largest depth", "in frame", "frames, wholly");
   for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
     const auto& [pair, inside] = rows[i];
     fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", name_of(input_, pair.a),
@@ -251,6 +249,7 @@ void TextReport::print_stages() const {
     row("penetration", sum_.penetration_seconds,
         fmt::format("{} inside, {}", counted(sum_.penetrations, "vertex", "vertices"),
                     counted(sum_.curves, "curve")));
+  if (input_.simulation.scene.manifolds) row("manifolds", sum_.manifold_seconds, "");
   row("sort, events", sum_.sort_and_events_seconds, "");
   row("total", total_seconds, "");
 }

@@ -35,9 +35,21 @@ struct ManifoldPoint {
 /// its normal as the nearest pair: for example an edge of a floor and an edge of the side of a box that
 /// stands on it.
 ///
+/// Where objects touch, or are as near as coordinates are rounded (2^-40 of their size), the points of a pair
+/// give no direction. The surfaces around the points do: the direction in which a plane lies between both,
+/// which is the normal of a face where there is such a face. So a box on a floor has the normal of the floor,
+/// whichever of them is a. Surfaces that lie in the plane keep the side to which they look, closed ones
+/// first. A pair where one surface fits into the other one has the normal of each face that keeps them apart,
+/// so a box in a corner has a patch for each wall.
+///
+/// Pairs know nothing of depth. Two objects whose surfaces cut through each other have no manifold of pairs,
+/// and a patch has none when the way between the points of its nearest pair starts inside a solid. So no
+/// manifold moves a body deeper. Request penetration, too, where objects may overlap.
+///
 /// The points are the deepest one, and those that are farthest from it, from the line, and outside the
-/// triangle of those before. Points nearer than 2^-10 of the size of the patch to what is spanned already
-/// are left out, so an edge has two points and a vertex has one. They run counter-clockwise, seen from a.
+/// triangle of those before. Of several deepest ones (within 2^-40), the first is the farthest from the
+/// middle of the patch. Points nearer than 2^-10 of the size of the patch to what is spanned already are left
+/// out, so an edge has two points and a vertex has one. They run counter-clockwise, seen from a.
 ///
 /// A manifold keeps its id while it stays. Of all manifolds of two objects in two steps that follow each
 /// other, those with most features in common are the same (a feature is a vertex, edge or triangle of one
@@ -50,7 +62,8 @@ struct Manifold {
   std::uint64_t id = 0;  ///< of no other manifold of the scene
   Lasting lasting = Lasting::begin;
   ManifoldSource source = ManifoldSource::curve;
-  /// Unit vector from b to a: that of the curve, or of the nearest pair. Zero when it is zero.
+  /// Unit vector from b to a: that of the curve, or of the nearest pair, or of the surfaces where they touch.
+  /// Zero when it is zero.
   Vec3d normal{};
   double depth = 0;               ///< that of the curve, or minus the distance of the nearest pair
   std::uint32_t first_point = 0;  ///< of `DetectResult::manifold_points`

@@ -50,8 +50,6 @@ inline constexpr std::array words<ElementKinds>{"all", "vertex_face", "edge_edge
 template <>
 inline constexpr std::array words<ContinuousListing>{"all", "first"};
 template <>
-inline constexpr std::array words<PenetrationDepths>{"all", "deepest"};
-template <>
 inline constexpr std::array words<Neighbours>{"skip", "exact"};
 
 template <>
@@ -319,11 +317,6 @@ struct Description<SceneOptions> {
         .member = &Options::curves,
         .doc = "Penetration: also list the curves in which surfaces intersect, with what they enclose, a "
                "normal and a depth"});
-    visitor(Field<Options, PenetrationDepths>{
-        .name = "depths",
-        .member = &Options::depths,
-        .doc = "Penetration: list all vertices inside solid objects with their depths, or only the deepest "
-               "one of each pair (deepest), which takes less time"});
     visitor(Field<Options, std::uint32_t>{
         .name = "max_exact_bits",
         .member = &Options::max_exact_bits,

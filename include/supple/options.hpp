@@ -98,15 +98,6 @@ enum class ContinuousListing : std::uint8_t {
   first,
 };
 
-/// Which vertices inside solids are listed with their depths.
-enum class PenetrationDepths : std::uint8_t {
-  all,
-  /// One vertex for each object and each solid that it enters: that with the largest `Penetration::depth`,
-  /// the smallest of several. Takes less time where depths take most of it, as for large meshes, because most
-  /// vertices are only shown to be less deep.
-  deepest,
-};
-
 /// Whether triangles of one object that share a vertex id are tested against each other.
 enum class Neighbours : std::uint8_t {
   skip,
@@ -186,7 +177,6 @@ struct SceneOptions {
   /// so leave it out where depths of vertices suffice. Manifolds of penetration are made from curves:
   /// `manifolds` includes them. A request with this option and without penetration is an error.
   bool curves = false;
-  PenetrationDepths depths = PenetrationDepths::all;
   /// Bounds the time of exact arithmetic on hostile coordinates; docs/conventions.md has a table. The bits of
   /// coordinates reach from the highest bit of the largest to the last bit of the finest. Elements of more
   /// bits that floating point cannot decide are reported as continuous contacts `within_tolerance`. For all
@@ -220,7 +210,6 @@ struct DetectRequest {
   std::optional<ContinuousListing> continuous_listing{};
   std::optional<bool> manifolds{};
   std::optional<bool> curves{};
-  std::optional<PenetrationDepths> depths{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the result and
   /// saves exact tests and memory: each worker holds at most about twice the limit for a pair of objects,

@@ -28,8 +28,7 @@ struct Penetration {
 
 /// The vertices of a that are inside b or on its surface: ranges of `DetectResult::penetrations` and of
 /// `DetectResult::vertices_on_surface`, each with ascending vertices. Only pairs with such a vertex are
-/// listed. The vertices of b inside a are a group of their own. With `PenetrationDepths::deepest`, only one
-/// of the vertices inside is listed.
+/// listed. The vertices of b inside a are a group of their own.
 struct PenetrationGroup {
   ObjectId a, b;
   std::uint32_t first_penetration = 0;

@@ -88,6 +88,7 @@ struct StepStats {
   double traversal_seconds = 0;        ///< search for candidates in object pairs
   double exact_seconds = 0;            ///< exact decision of candidates
   double penetration_seconds = 0;      ///< vertices inside solids, contained parts, and curves
+  double manifold_seconds = 0;         ///< manifolds and their ids
   double sort_and_events_seconds = 0;  ///< sorting of contacts, and events
   double total_seconds = 0;
 

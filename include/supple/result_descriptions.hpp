@@ -68,6 +68,7 @@ struct Description<StepStats> {
     seconds("exact_seconds", &Stats::exact_seconds, "Time of the exact stage, which decides the candidates");
     seconds("penetration_seconds", &Stats::penetration_seconds,
             "Time to find vertices inside solids, contained parts and curves");
+    seconds("manifold_seconds", &Stats::manifold_seconds, "Time to find manifolds and their ids");
     seconds("sort_and_events_seconds", &Stats::sort_and_events_seconds,
             "Time to sort contacts and to find events");
     seconds("total_seconds", &Stats::total_seconds, "Time of the whole detection");

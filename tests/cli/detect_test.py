@@ -11,7 +11,7 @@ from program import CROSSED, FAR, PROGRAM, ROOT, TRIANGLE, UPRIGHT, ProgramTest
 STATS = {"broad_phase_method", 
     "refit_seconds", "broad_phase_seconds", "traversal_seconds", "exact_seconds", "sort_and_events_seconds", "total_seconds",
     "rebuild_seconds", "objects_refitted", "triangles_refitted", "octrees_rebuilt", "triangles_rebuilt", "object_pairs_tested", "object_pairs", "node_pairs_visited",
-    "broad_phase_method", "boxes_tested", "candidate_pairs", "vertex_face_candidates", "edge_edge_candidates", "exact_fallbacks", "contacts", "proximity_pairs", "penetration_seconds",
+    "broad_phase_method", "boxes_tested", "candidate_pairs", "vertex_face_candidates", "edge_edge_candidates", "exact_fallbacks", "contacts", "proximity_pairs", "penetration_seconds", "manifold_seconds",
     "penetrations", "curves",
 }
 

@@ -91,20 +91,6 @@ class Penetration(ProgramTest):
         self.assertIn("The deepest is vertex", done.out)
         self.assertIn(": 0.75 in frame 1.", done.out)
 
-    def test_only_the_deepest(self):
-        self.write("ball.obj", moved(SMALL, 1.75, 0.5, 0.25))
-        self.write("twice.obj", joined(moved(SMALL, 0.25, 0.5, 0.5), moved(SMALL, 1.0, 0.75, 0.75)))
-        for name, count in (("ball.obj", 4), ("twice.obj", 16)):
-            of_all = self.frame(name, "a.obj")["penetration"][0]["vertices"]
-            self.assertEqual(len(of_all), count)
-            frame = self.frame(name, "a.obj", "--depths", "deepest", "--verify")
-            deepest = max(of_all, key=lambda row: (row[2], -row[0]))
-            self.assertEqual((frame["penetration"][0]["vertices"], frame["penetration_verify"]["differences"]), ([deepest], []))
-            self.assertEqual(frame["stats"]["penetrations"], 1)
-        done = self.run_here("detect", "twice.obj", "a.obj", "--depths", "deepest")
-        self.assertEqual(done.status, 2)
-        self.assertIn("--depths", done.error)
-
     def test_flush_boxes(self):
         self.write("c.obj", moved(BOX, 0, 1.9375, 0))
         (curve,) = self.frame("a.obj", "c.obj", "--contact-details")["curves"]

@@ -37,7 +37,6 @@ KEYS = {
     "skip_parting": ("true", True, 'contacts = "continuous"\n'),
     "element_kinds": ('"edge_edge"', "edge_edge", 'contacts = "proximity"\n'),
     "continuous_listing": ('"first"', "first", 'contacts = "continuous"\n'),
-    "depths": ('"deepest"', "deepest", 'contacts = "penetration"\n'),
     "manifolds": ("true", True, 'contacts = "proximity"\n'),
     "max_exact_bits": ("300", 300, ""),
     "colliding_vertices": ("true", True, ""),

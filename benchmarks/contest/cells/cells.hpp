@@ -40,5 +40,8 @@ void run_build(const Choice& choice, const std::string& cell, Output& output);
 void run_first_frame(const Choice& choice, const std::string& cell, Output& output);
 /// SHAPExCOPIES: the distribution of the times of 10,000 frames (`Choice::rounds`, if given).
 void run_frames(const Choice& choice, const std::string& cell, Output& output);
+/// A pile of crates and balls, with penetration or proximity: the median time of a frame with manifolds and
+/// without, of the manifolds alone, and of a plain loop that makes its own.
+void run_game(const Choice& choice, const std::string& cell, Output& output);
 
 }  // namespace supple::benchmarks

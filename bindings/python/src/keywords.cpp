@@ -40,7 +40,7 @@ DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const c
           (std::string(where) + ": there is no option '" + keyword +
            "'; the options are contacts, those of continuous contacts (supple.options"
            "('ImpactOptions')), proximity_listing, element_kinds, continuous_listing, manifolds, "
-           "curves, depths and max_contacts")
+           "curves and max_contacts")
               .c_str());
     }
     if (keyword == "contacts")
@@ -55,8 +55,6 @@ DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const c
       request.manifolds = options.manifolds;
     else if (keyword == "curves")
       request.curves = options.curves;
-    else if (keyword == "depths")
-      request.depths = options.depths;
     else if (ImpactOptions impact; keyword == "impact" || set_option(impact, keyword, value, where))
       request.impact = options.impact;
     else

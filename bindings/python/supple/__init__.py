@@ -142,7 +142,6 @@ __all__ = [
     "Option",
     "PairContacts",
     "PairStage",
-    "PenetrationDepths",
     "PenetrationDifferenceFault",
     "ProximityDifferenceFault",
     "ProximityListing",

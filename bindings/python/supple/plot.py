@@ -13,6 +13,7 @@ _STAGES = (
     "traversal_seconds",
     "exact_seconds",
     "penetration_seconds",
+    "manifold_seconds",
     "sort_and_events_seconds",
 )
 

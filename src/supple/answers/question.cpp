@@ -17,8 +17,7 @@ Question question_of(const DetectRequest& request, const SceneOptions& options) 
       .colliding_vertices = options.comparison.colliding_vertices,
       .lazy_refit = options.comparison.lazy_refit,
       .manifolds = request.manifolds.value_or(options.manifolds),
-      .curves = request.curves.value_or(options.curves),
-      .depths = request.depths.value_or(options.depths)};
+      .curves = request.curves.value_or(options.curves)};
   if (request.manifolds.value_or(false) && !question.has_penetration() && !question.has_proximity())
     fail("detect: manifolds are made from penetration or proximity; request one of these contacts");
   if (request.curves.value_or(false) && !question.has_penetration())

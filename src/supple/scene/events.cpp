@@ -5,15 +5,18 @@
 #include <utility>
 
 #include "core/sort_once.hpp"
+#include "core/timer.hpp"
 
 namespace supple {
 
-void Events::prepare(World& world, const Question& question, const DetectResult& found) {
+void Events::prepare(World& world, const Question& question, DetectResult& found) {
   list_deep_pairs(found);
   list_touching_pairs(found);
   list_pairs_of_groups(found);
   if (question.manifolds) {
+    Timer timer;
     find_manifolds(world, found);
+    found.stats.manifold_seconds = timer.lap();
   } else {
     manifold_pass_.find_none();
   }
@@ -49,12 +52,14 @@ void Events::find_manifolds(World& world, const DetectResult& found) {
   manifold_objects_.clear();
   for (std::uint32_t slot = 0; slot < world.slot_count(); ++slot) {
     manifold_objects_.emplace_back();
-    if (world.at(slot) != nullptr)
-      manifold_objects_.back() = {&world[slot].octree(), &world[slot].placement()};
+    if (world.at(slot) == nullptr) continue;
+    WorldObject& object = world[slot];
+    manifold_objects_.back() = {
+        {&object.octree(), nullptr, &object.placement().end(), object.placement().translation()}, &object};
   }
   for (const ContactGroup& group : found.proximity_groups) {
     for (const ObjectId id : {group.a, group.b})
-      manifold_objects_[id.index].around = &world[id.index].vertex_triangles();
+      manifold_objects_[id.index].surface.around = &world[id.index].vertex_triangles();
   }
   manifold_pass_.find(found, manifold_objects_);
 }

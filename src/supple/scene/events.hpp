@@ -14,9 +14,9 @@ namespace supple {
 /// What begins, stays and ends from one step of a scene to the next: pairs of objects and manifolds.
 class Events {
  public:
-  /// Compares the answers of a step with those of the step before. It does everything that may run out of
-  /// memory, and the state stays that of the step before until `publish`.
-  void prepare(World& world, const Question& question, const DetectResult& found);
+  /// Compares the answers of a step with those of the step before, and measures the time of manifolds. It
+  /// does everything that may run out of memory, and the state stays that of the step before until `publish`.
+  void prepare(World& world, const Question& question, DetectResult& found);
   /// Takes the step over, and adds its events and manifolds to `found`. Each pair begins and ends exactly
   /// once.
   void publish(DetectResult& found);

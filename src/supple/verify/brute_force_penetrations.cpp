@@ -88,36 +88,9 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
   return result;
 }
 
-namespace {
-
-/// The vertices that must be listed: those on the surface, and of those inside only the one that is reported,
-/// if none is deeper, and otherwise the deepest.
-std::vector<ExactPenetration> expected_deepest(std::span<const Penetration> inside,
-                                               std::span<const ExactPenetration> truth) {
-  constexpr int units = 8;  // two depths may be rounded
-  const ExactPenetration* deepest = nullptr;
-  for (const ExactPenetration& p : truth) {
-    if (p.where != Containment::inside) continue;
-    if (deepest == nullptr || compare(p.squared_depth, deepest->squared_depth) > 0) deepest = &p;
-  }
-  for (const ExactPenetration& p : truth) {
-    const bool is_reported = inside.size() == 1 && inside.front().vertex == p.vertex;
-    if (is_reported && p.where == Containment::inside &&
-        is_within_units(inside.front().depth, deepest->squared_depth, units))
-      deepest = &p;
-  }
-  std::vector<ExactPenetration> expected;
-  for (const ExactPenetration& p : truth) {
-    if (p.where == Containment::on || &p == deepest) expected.push_back(p);
-  }
-  return expected;
-}
-
-}  // namespace
-
 void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> inside,
                           std::span<const std::uint32_t> on_surface, std::span<const ContainedPart> parts,
-                          const BruteForcePenetrations& truth, PenetrationDepths depths,
+                          const BruteForcePenetrations& truth,
                           std::vector<PenetrationDifference>& differences) {
   using Fault = PenetrationDifference::Fault;
   const auto note = [&](std::uint32_t vertex, Fault fault) {
@@ -125,9 +98,7 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
   };
   auto next_inside = inside.begin();
   auto next_on = on_surface.begin();
-  const bool is_deepest = depths == PenetrationDepths::deepest;
-  for (const ExactPenetration& expected :
-       is_deepest ? expected_deepest(inside, truth.vertices) : truth.vertices) {
+  for (const ExactPenetration& expected : truth.vertices) {
     for (; next_inside != inside.end() && next_inside->vertex < expected.vertex; ++next_inside)
       note(next_inside->vertex, Fault::added);
     for (; next_on != on_surface.end() && *next_on < expected.vertex; ++next_on) note(*next_on, Fault::added);

@@ -36,11 +36,10 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
                                                         std::span<const std::uint32_t> touching,
                                                         const Parallel& parallel);
 
-/// Appends the differences between the truth and what was reported for one object inside another. With
-/// `PenetrationDepths::deepest`, the reported vertex must be the deepest one, to the accuracy of depths.
+/// Appends the differences between the truth and what was reported for one object inside another.
 void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> inside,
                           std::span<const std::uint32_t> on_surface, std::span<const ContainedPart> parts,
-                          const BruteForcePenetrations& truth, PenetrationDepths depths,
+                          const BruteForcePenetrations& truth,
                           std::vector<PenetrationDifference>& differences);
 
 /// What `verify_curves` knows of one of two objects.

@@ -129,8 +129,7 @@ void Verification::verify_penetrations(const ObjectPair& pair, std::span<const T
     for (const ContainedPart& part : result_.contained_parts) {
       if (part.inner == in_order.a && part.outer == in_order.b) parts.push_back(part);
     }
-    compare_penetrations(in_order, inside, on_surface, parts, truth, question_.depths,
-                         report.penetration_differences);
+    compare_penetrations(in_order, inside, on_surface, parts, truth, report.penetration_differences);
     std::erase_if(truth.vertices, [](const ExactPenetration& p) { return p.where != Containment::inside; });
     found = std::move(truth.vertices);
   };

@@ -34,7 +34,7 @@ class WrongPenetrations : public testing::Test {
 
   std::vector<PenetrationDifference> differences() const {
     std::vector<PenetrationDifference> found;
-    compare_penetrations(pair_, inside_, on_surface_, parts_, truth_, depths_, found);
+    compare_penetrations(pair_, inside_, on_surface_, parts_, truth_, found);
     return found;
   }
   void expect_one(std::uint32_t vertex, Fault fault) const {
@@ -47,7 +47,6 @@ class WrongPenetrations : public testing::Test {
   std::vector<std::uint32_t> on_surface_;
   std::vector<ContainedPart> parts_;
   BruteForcePenetrations truth_;
-  PenetrationDepths depths_ = PenetrationDepths::all;
 };
 
 TEST_F(WrongPenetrations, NoneIsReportedForTheRightOnes) {
@@ -84,20 +83,6 @@ TEST_F(WrongPenetrations, AVertexInTheWrongListIsNoticed) {
 TEST_F(WrongPenetrations, AVertexThatIsNotOnTheSurfaceIsNoticed) {
   on_surface_.push_back(1000);
   expect_one(1000, Fault::added);
-}
-
-TEST_F(WrongPenetrations, OneVertexMustBeTheDeepest) {
-  depths_ = PenetrationDepths::deepest;
-  const auto less = [](const Penetration& p, const Penetration& q) { return p.depth < q.depth; };
-  const Penetration deepest = *std::ranges::max_element(inside_, less), other = inside_.front();
-  ASSERT_LT(other.depth, deepest.depth * (1 - 0x1p-40));
-  EXPECT_FALSE(differences().empty());
-  inside_ = {deepest};
-  EXPECT_TRUE(differences().empty());
-  inside_.clear();
-  expect_one(deepest.vertex, Fault::missed);
-  inside_ = {other};
-  EXPECT_EQ(differences().size(), 2u);
 }
 
 TEST_F(WrongPenetrations, PartsAreCompared) {

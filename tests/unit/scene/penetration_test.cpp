@@ -629,50 +629,6 @@ TEST(Penetration, ReusesOnlyWhatAFreshSceneFinds) {
   EXPECT_GT(curves, 60 * seeds);
 }
 
-TEST(Penetration, TheDeepestIsThatOfTheWholeList) {
-  std::size_t pairs = 0, vertices = 0;
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    SCOPED_TRACE(seed);
-    RandomNumbers random(seed);
-    SceneOptions options = penetration;
-    options.threads = 1 + random.below(3);
-    Scene scene(options);
-    const ObjectId first = scene.add(wavy(make_icosphere(6), random), {.solid = true});
-    scene.add(wavy(make_icosphere(5), random), {.solid = true});
-    scene.add(lattice_solid(random, 3, 0.3), {.solid = true});
-    scene.add(lattice_solid(random, 3, 0.3), {.solid = true});
-    for (int step = 0; step < 2; ++step) {
-      const DetectResult& all = scene.detect({.depths = PenetrationDepths::all});
-      std::vector<Penetration> expected;
-      std::vector<PenetrationGroup> groups = list_of(all.penetration_groups);
-      for (const PenetrationGroup& group : groups) {
-        const auto inside = all.penetrations_of(group);
-        if (inside.empty()) continue;
-        // The first of several is that with the smallest number.
-        expected.push_back(*std::ranges::max_element(
-            inside, [](const Penetration& p, const Penetration& q) { return p.depth < q.depth; }));
-        vertices += inside.size();
-      }
-      pairs += expected.size();
-      const std::vector<std::uint32_t> on_surface = list_of(all.vertices_on_surface);
-      const std::vector<ContainedPart> parts = list_of(all.contained_parts);
-      const DetectResult& deepest = scene.detect({.depths = PenetrationDepths::deepest});
-      EXPECT_EQ(list_of(deepest.penetrations), expected);
-      EXPECT_EQ(list_of(deepest.vertices_on_surface), on_surface);
-      EXPECT_EQ(list_of(deepest.contained_parts), parts);
-      EXPECT_EQ(deepest.penetration_groups.size(), groups.size());
-      EXPECT_EQ(deepest.stats.penetrations, expected.size());
-      EXPECT_TRUE(scene.verify().agrees());
-      // The other pairs are reused.
-      scene.translate(first, {0.05, 0.02, 0.01});
-      scene.detect({.depths = PenetrationDepths::deepest});
-      EXPECT_TRUE(scene.verify().agrees());
-    }
-  }
-  EXPECT_GT(pairs, 20u);
-  EXPECT_GT(vertices, 10 * pairs);
-}
-
 TEST(Penetration, OfASolidWithAHoleKnowsItsSurface) {
   for (const auto kinds : {ContactKinds::penetration, ContactKinds::penetration | ContactKinds::proximity}) {
     Scene scene({.contacts = kinds});

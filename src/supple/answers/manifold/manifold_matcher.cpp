@@ -22,6 +22,7 @@ void ManifoldMatcher::match(const ManifoldLists& before, ManifoldLists& now, std
                             std::vector<EndedManifold>& ended) {
   old_of_.assign(now.manifolds.size(), none);
   new_of_.assign(before.manifolds.size(), none);
+  match_single(before, now);
   match_by_names(before, now);
   match_by_places(before, now);
   for (std::size_t i = 0; i < now.manifolds.size(); ++i) {
@@ -49,8 +50,28 @@ void ManifoldMatcher::match(const ManifoldLists& before, ManifoldLists& now, std
             [](const EndedManifold& p, const EndedManifold& q) { return p.id < q.id; });
 }
 
-/// Matches manifolds with features in common, first those with most of them. A feature of many manifolds
-/// says little, and is left out, so that the work stays linear.
+/// Matches the only manifold of two objects with their only one of the step before. Both lists are in the
+/// order of objects.
+void ManifoldMatcher::match_single(const ManifoldLists& before, const ManifoldLists& now) {
+  const auto objects = [](const Manifold& manifold) { return std::tie(manifold.a, manifold.b); };
+  const auto is_single = [&](const std::vector<Manifold>& list, std::size_t i) {
+    return (i == 0 || objects(list[i - 1]) != objects(list[i])) &&
+           (i + 1 == list.size() || objects(list[i + 1]) != objects(list[i]));
+  };
+  std::uint32_t old = 0;
+  for (std::uint32_t i = 0; i < now.manifolds.size(); ++i) {
+    while (old < before.manifolds.size() && objects(before.manifolds[old]) < objects(now.manifolds[i])) ++old;
+    if (old == before.manifolds.size()) return;
+    if (objects(before.manifolds[old]) != objects(now.manifolds[i]) || !is_single(before.manifolds, old) ||
+        !is_single(now.manifolds, i))
+      continue;
+    new_of_[old] = i;
+    old_of_[i] = old;
+  }
+}
+
+/// Matches other manifolds with features in common, first those with most of them. A feature of many
+/// manifolds says little, and is left out, so that the work stays linear.
 void ManifoldMatcher::match_by_names(const ManifoldLists& before, const ManifoldLists& now) {
   constexpr std::ptrdiff_t most_manifolds = 16;
   const auto for_each_key = [](const ManifoldLists& lists, std::uint32_t i, const auto& visit) {
@@ -65,11 +86,13 @@ void ManifoldMatcher::match_by_names(const ManifoldLists& before, const Manifold
     }
   };
   named_.clear();
-  for (std::uint32_t i = 0; i < before.manifolds.size(); ++i)
-    for_each_key(before, i, [&](const Key& key) { named_.push_back({key, i}); });
+  for (std::uint32_t i = 0; i < before.manifolds.size(); ++i) {
+    if (new_of_[i] == none) for_each_key(before, i, [&](const Key& key) { named_.push_back({key, i}); });
+  }
   sort_once(named_);
   common_.clear();
   for (std::uint32_t i = 0; i < now.manifolds.size(); ++i) {
+    if (old_of_[i] != none) continue;
     for_each_key(now, i, [&](const Key& key) {
       const auto first =
           std::lower_bound(named_.begin(), named_.end(), key,
@@ -141,8 +164,8 @@ void ManifoldMatcher::match_by_places(const ManifoldLists& before, const Manifol
   }
 }
 
-/// Gives the points of a manifold the ids of those of the old one: first where both features agree, then
-/// where one does, then the nearest.
+/// Gives the points of a manifold the ids of those of the old one: first where all features agree, then where
+/// one does, then the nearest.
 void ManifoldMatcher::match_points(const ManifoldLists& before, const Manifold& old, ManifoldLists& now,
                                    const Manifold& manifold) {
   struct Match {
@@ -151,30 +174,38 @@ void ManifoldMatcher::match_points(const ManifoldLists& before, const Manifold& 
     std::uint32_t before = 0, now = 0;
     auto order() const { return std::tuple(missing, distance, before, now); }
   };
+  std::array<bool, 4> is_taken{};
+  const auto take = [&](std::uint32_t from, std::uint32_t to) {
+    ManifoldPoint& point = now.points[to];
+    bool& taken = is_taken[from - old.first_point];
+    if (taken || point.lasting == Lasting::stay) return;
+    taken = true;
+    point.id = before.points[from].id;
+    point.lasting = Lasting::stay;
+  };
+  const auto for_each_pair = [&](const auto& visit) {
+    for (std::uint32_t p = 0; p < old.point_count; ++p) {
+      for (std::uint32_t q = 0; q < manifold.point_count; ++q)
+        visit(old.first_point + p, manifold.first_point + q);
+    }
+  };
+  for_each_pair([&](std::uint32_t from, std::uint32_t to) {
+    if (before.names[from] == now.names[to]) take(from, to);
+  });
   std::array<Match, 16> matches;
   std::size_t count = 0;
-  for (std::uint32_t p = 0; p < old.point_count; ++p) {
-    for (std::uint32_t q = 0; q < manifold.point_count; ++q) {
-      const std::uint32_t from = old.first_point + p, to = manifold.first_point + q;
-      const ManifoldLists::PointName &was = before.names[from], &is = now.names[to];
-      Match& match = matches[count++];
-      match = {2, squared_norm(before.points[from].position - now.points[to].position), from, to};
-      for (std::size_t side = 0; side < 2; ++side) {
-        if (was.has_name[side] && is.has_name[side] && was.names[side] == is.names[side]) --match.missing;
-      }
+  for_each_pair([&](std::uint32_t from, std::uint32_t to) {
+    if (is_taken[from - old.first_point] || now.points[to].lasting == Lasting::stay) return;
+    const ManifoldLists::PointName &was = before.names[from], &is = now.names[to];
+    Match& match = matches[count++];
+    match = {2, squared_norm(before.points[from].position - now.points[to].position), from, to};
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (was.has_name[side] && is.has_name[side] && was.names[side] == is.names[side]) --match.missing;
     }
-  }
+  });
   std::sort(matches.begin(), matches.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Match& p, const Match& q) { return p.order() < q.order(); });
-  std::array<bool, 4> is_taken{};
-  for (const Match& match : std::span(matches).first(count)) {
-    ManifoldPoint& point = now.points[match.now];
-    bool& taken = is_taken[match.before - old.first_point];
-    if (taken || point.lasting == Lasting::stay) continue;
-    taken = true;
-    point.id = before.points[match.before].id;
-    point.lasting = Lasting::stay;
-  }
+  for (const Match& match : std::span(matches).first(count)) take(match.before, match.now);
 }
 
 }  // namespace supple

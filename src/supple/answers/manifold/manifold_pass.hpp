@@ -7,20 +7,12 @@
 #include <vector>
 
 #include "answers/manifold/manifold_points.hpp"
-#include "mesh/vertex_triangles.hpp"
-#include "octree/object_octree.hpp"
+#include "answers/manifold/touching_normals.hpp"
+#include "queries/feature_name.hpp"
 #include "supple/manifold.hpp"
 #include "supple/result.hpp"
-#include "world/object/placement.hpp"
 
 namespace supple {
-
-/// The data of an object that the pass reads.
-struct ManifoldObject {
-  const ObjectOctree* octree = nullptr;
-  const Placement* placement = nullptr;
-  const VertexTriangles* around = nullptr;  ///< for objects with proximity pairs, by the user's numbers
-};
 
 /// The manifolds of one step, with the names of their points.
 struct ManifoldLists {
@@ -28,6 +20,7 @@ struct ManifoldLists {
   struct PointName {
     std::array<FeatureName, 2> names{};
     std::array<bool, 2> has_name{};
+    constexpr bool operator==(const PointName&) const = default;
   };
   std::vector<Manifold> manifolds;
   std::vector<ManifoldPoint> points;
@@ -72,6 +65,7 @@ class ManifoldMatcher {
     std::uint32_t manifold = 0;
   };
 
+  void match_single(const ManifoldLists& before, const ManifoldLists& now);
   void match_by_names(const ManifoldLists& before, const ManifoldLists& now);
   void match_by_places(const ManifoldLists& before, const ManifoldLists& now);
   void match_points(const ManifoldLists& before, const Manifold& old, ManifoldLists& now,
@@ -110,15 +104,19 @@ class ManifoldPass {
   void add_curve(const DetectResult& result, std::uint32_t index);
   void add_enclosed(const DetectResult& result, const IntersectionCurve& curve, ContactSide side);
   void add_patches(const DetectResult& result, const ContactGroup& group);
-  void link_pairs(const DetectResult& result, const ContactGroup& group);
+  bool list_directions(std::span<const ProximityPair> pairs, const ContactGroup& group);
+  void link_pairs(std::span<const ProximityPair> pairs, const ContactGroup& group);
+  std::uint32_t place_of(std::uint32_t side, std::uint32_t vertex) const;
   template <class Visit>
   void for_each_vertex(ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
                        const Visit& visit) const;
-  bool is_kept_apart(const ProximityPair& pair, const ProximityPair& nearest) const;
+  bool is_kept_apart(const ProximityPair& pair, double distance, const Vec3d& direction) const;
   template <class Visit>
-  void for_each_linked_vertex(const ContactGroup& group, std::uint32_t vertex, const Visit& visit) const;
+  void for_each_linked_vertex(const ContactGroup& group, std::uint32_t place, const Visit& visit) const;
   void grow_patch(std::span<const ProximityPair> pairs, const ContactGroup& group, std::uint32_t seed);
-  void add_manifold(const Manifold& manifold);
+  void add_patch(std::span<const ProximityPair> pairs, const ContactGroup& group, std::uint32_t seed);
+  template <class NameOf>
+  void add_manifold(const Manifold& manifold, const NameOf& name_of);
   void match();
 
   std::span<const ManifoldObject> objects_;
@@ -127,20 +125,32 @@ class ManifoldPass {
   std::uint64_t last_id_ = 0, next_last_id_ = 0;
   ManifoldMatcher matcher_;
   std::vector<ManifoldCandidate> candidates_;
+  PointChoice point_choice_;
 
-  // The pairs of one group, as places in it.
-  struct Use {
-    std::uint32_t side = 0, vertex = 0, pair = 0;
-    constexpr auto operator<=>(const Use&) const = default;
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  // The pairs of one group.
+  /// A direction in which a pair keeps the objects apart. Only surfaces that touch have several.
+  struct Direction {
+    std::uint32_t pair = 0;  // its place in the group
+    bool touches = false;
+    bool is_one_of_several = false;
+    Vec3d normal;
   };
-  std::vector<Use> uses_;                  // sorted: those of a vertex follow each other
-  std::vector<std::uint32_t> first_use_;   // of each vertex
-  std::vector<std::uint32_t> scanned_by_;  // the last patch that looked at the pairs of a vertex
-  std::vector<std::uint32_t> linked_by_;   // the last patch that looked at the triangles around a vertex
-  std::vector<std::array<std::uint32_t, 6>> vertices_of_pair_;
-  std::vector<std::uint8_t> vertex_count_of_pair_;
-  std::vector<std::uint8_t> is_in_patch_;
+  struct Vertex {
+    std::uint32_t side = 0, vertex = 0;
+    std::uint32_t first_use = 0;      // of `uses_`, those of a vertex follow each other
+    std::uint32_t scanned_by = none;  // the last patch that looked at its directions
+    std::uint32_t linked_by = none;   // the last patch that looked at the triangles around it
+  };
+  TouchingNormals touching_;
+  std::vector<Direction> directions_;
+  std::vector<Vertex> vertices_;
+  std::array<std::vector<std::uint32_t>, 2> places_;       // by side and vertex
+  std::vector<std::uint32_t> uses_;                        // directions, by vertex
+  std::vector<std::array<std::uint32_t, 6>> vertices_of_;  // by direction, as places
+  std::vector<std::uint8_t> vertex_counts_, is_in_patch_;
   std::vector<std::uint32_t> by_distance_, patch_;
+  std::size_t left_ = 0;  // directions in no patch
 };
 
 }  // namespace supple

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "queries/feature_name.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -13,9 +13,7 @@ namespace supple {
 struct ManifoldCandidate {
   Vec3d position;
   double depth = 0;
-  /// The features of a and of b that meet there. A vertex that a curve encloses has one.
-  std::array<FeatureName, 2> names{};
-  std::array<bool, 2> has_name{};
+  std::uint32_t record = 0, part = 0;  ///< where the caller has it from
 };
 
 /// Indices of candidates.
@@ -24,8 +22,20 @@ struct ManifoldChoice {
   std::uint32_t count = 0;
 };
 
-/// Chooses at most four points that span the candidates in the plane at right angles to the normal, in the
-/// order around it; see `Manifold`. There is at least one candidate, and all are finite. O(n).
-ManifoldChoice choose_points(std::span<const ManifoldCandidate> candidates, const Vec3d& normal);
+/// Chooses at most four points that span candidates in the plane at right angles to the normal, in the order
+/// around it; see `Manifold`. Keeps its memory.
+class PointChoice {
+ public:
+  /// There is at least one candidate, and all are finite. O(n).
+  ManifoldChoice choose(std::span<const ManifoldCandidate> candidates, const Vec3d& normal);
+
+ private:
+  struct Point {
+    double x = 0, y = 0, depth = 0;
+  };
+  double project(std::span<const ManifoldCandidate> candidates, const Vec3d& normal);
+
+  std::vector<Point> points_;  // in the plane, scaled by a power of two so that nothing overflows or vanishes
+};
 
 }  // namespace supple

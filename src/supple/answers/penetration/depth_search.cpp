@@ -48,10 +48,9 @@ void DepthSearch::start() {
   nearest_ = none;
 }
 
-const FoundTriangle* DepthSearch::find(const QueriedObject& object, const Vec3d& point, double least) {
+const FoundTriangle* DepthSearch::find(const QueriedObject& object, const Vec3d& point) {
   object_ = &object;
   point_ = point;
-  least_ = least;
   candidates_.clear();
   is_bounded_ = has_found_ = used_exact_ = false;
   set_limit(std::numeric_limits<double>::infinity());
@@ -79,10 +78,8 @@ const FoundTriangle* DepthSearch::find(const QueriedObject& object, const Vec3d&
 }
 
 void DepthSearch::set_limit(double limit) {
-  // The rounded distance exceeds the exact one by at most 4 units in the last place.
-  const bool is_less = limit * (1 + 0x1p-48) < least_;
-  limit_ = is_less ? -1 : limit;
-  squared_limit_ = is_less ? -1 : round_up(limit * limit * (1 + 0x1p-18) + 0x1p-120);
+  limit_ = limit;
+  squared_limit_ = round_up(limit * limit * (1 + 0x1p-18) + 0x1p-120);
 }
 
 /// Keeps those of a block of triangles that may be the nearest.

@@ -45,9 +45,8 @@ class DepthSearch {
   /// Call before points in another object, or after it moved.
   void start();
   /// The nearest triangle of a finite point; of several, that with the smallest number. Null when the object
-  /// has no finite triangle, and where the distance is less than `least`, which takes less time. Valid until
-  /// the next call. Starts at the nearest triangle of the point before.
-  const FoundTriangle* find(const QueriedObject& object, const Vec3d& point, double least = 0);
+  /// has no finite triangle. Valid until the next call. Starts at the nearest triangle of the point before.
+  const FoundTriangle* find(const QueriedObject& object, const Vec3d& point);
 
  private:
   struct Candidate {
@@ -70,8 +69,8 @@ class DepthSearch {
   // State of one search.
   const QueriedObject* object_ = nullptr;
   Vec3d point_;
-  double least_ = 0, limit_ = 0;  // triangles beyond the limit are not of interest
-  float squared_limit_ = 0;       // rounded up by more than a squared distance in single precision can lose
+  double limit_ = 0;         // triangles beyond the limit are not of interest
+  float squared_limit_ = 0;  // rounded up by more than a squared distance in single precision can lose
   bool is_bounded_ = false, has_found_ = false, used_exact_ = false;
   FoundTriangle found_;
   FeatureName feature_;

@@ -29,10 +29,10 @@ std::span<Item> part_of(std::vector<Item>& list, Range range) {
 }  // namespace
 
 bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObject> objects,
-                          const DetectResult& result, Lists lists) {
+                          const DetectResult& result, bool curves) {
   objects_ = objects;
   list_pairs(input.jobs);
-  outcomes_.plan(pairs_, input.versions, std::exchange(lists_, lists) == lists);
+  outcomes_.plan(pairs_, input.versions, std::exchange(with_curves_, curves) == curves);
   tasks_.clear();
   for (const std::uint32_t i : outcomes_.open_jobs()) tasks_.push_back({i, {}});
   outcomes_.expect_tasks(tasks_.size());
@@ -89,7 +89,7 @@ std::array<std::uint32_t, PenetrationPass::list_count> PenetrationPass::sizes_of
 void PenetrationPass::run_task(const Task& task, const DetectResult& result, Worker& worker) const {
   const PenetratedObject &inner = objects_[task.inner], &outer = objects_[task.outer];
   if (task.inner != task.outer && outer.is_solid) find_inside(task, result, worker);
-  if (lists_.curves && task.inner <= task.outer && task.group != nullptr)
+  if (with_curves_ && task.inner <= task.outer && task.group != nullptr)
     worker.curve_finder.find({inner.surface, outer.surface, &inner.queried, &outer.queried, inner.is_solid,
                               outer.is_solid, task.inner == task.outer, task.group, &result},
                              worker.curves);
@@ -204,32 +204,9 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   for (const std::uint32_t v : corners) marks[v] = 0;
   for (std::size_t i = first_inside; i < worker.inside.size(); ++i) marks[worker.inside[i]] = 0;
   worker.has_marks = false;
-  if (lists_.depths == PenetrationDepths::deepest) keep_deepest(task, first_inside, worker);
   std::sort(worker.inside.begin() + static_cast<std::ptrdiff_t>(first_inside), worker.inside.end());
   std::sort(worker.on_surface.begin() + static_cast<std::ptrdiff_t>(first_on_surface),
             worker.on_surface.end());
-}
-
-/// Leaves the deepest of the vertices from `first_inside` on. They were found from the surface inwards.
-void PenetrationPass::keep_deepest(const Task& task, std::size_t first_inside, Worker& worker) const {
-  const QueriedObject& outer = objects_[task.outer].queried;
-  worker.depth_search.start();
-  double depth = -1;
-  std::uint32_t deepest = 0;
-  for (std::size_t i = worker.inside.size(); i-- > first_inside;) {
-    const std::uint32_t v = worker.inside[i];
-    const Vec3d point = objects_[task.inner].surface.position(v);
-    const FoundTriangle* const nearest = worker.depth_search.find(outer, point, depth);
-    if (nearest == nullptr) continue;
-    bool used_exact = false;
-    const double distance = distance_of(nearest->elements(), nearest->features, used_exact).distance;
-    if (distance < depth || (distance == depth && v > deepest)) continue;
-    depth = distance;
-    deepest = v;
-  }
-  if (worker.inside.size() == first_inside) return;
-  worker.inside.resize(first_inside);
-  worker.inside.push_back(deepest);
 }
 
 /// Pairs are in canonical order. Reused items move within the lists; new items are written between them. New

@@ -40,15 +40,9 @@ struct PenetratedObject {
 /// memory between steps.
 class PenetrationPass {
  public:
-  /// What is listed besides contained parts.
-  struct Lists {
-    PenetrationDepths depths = PenetrationDepths::all;
-    bool curves = false;
-    bool operator==(const Lists&) const = default;
-  };
   /// `result` has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
   bool run(const PassInput& input, std::span<const PenetratedObject> objects, const DetectResult& result,
-           Lists lists);
+           bool curves);
 
   std::span<const PenetrationGroup> groups() const { return groups_; }
   std::span<const Penetration> penetrations() const { return penetrations_; }
@@ -112,7 +106,6 @@ class PenetrationPass {
   void run_task(const Task& task, const DetectResult& result, Worker& worker) const;
   static std::array<std::uint32_t, list_count> sizes_of(const Worker& worker);
   void find_inside(const Task& task, const DetectResult& result, Worker& worker) const;
-  void keep_deepest(const Task& task, std::size_t first_inside, Worker& worker) const;
   void collect_touched(const Task& task, const DetectResult& result, Worker& worker) const;
   void gather();
   void move_known_curves(std::size_t i);
@@ -122,7 +115,7 @@ class PenetrationPass {
   void find_depths(std::size_t begin, std::size_t end, Worker& worker);
 
   std::span<const PenetratedObject> objects_;
-  Lists lists_;
+  bool with_curves_ = false;
   std::vector<Worker> workers_;
   std::vector<ContactJob> pairs_;  // inner and outer object, ascending
   std::vector<ContactTask> tasks_;

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "contest/cells/cells.hpp"
+#include "supple/models.hpp"
+#include "supple/scene.hpp"
+#include "workloads/random_numbers.hpp"
+
+namespace supple::benchmarks {
+namespace {
+
+/// A pile of 400 solid crates and balls on a floor that shake: each touches its neighbours, and is a little
+/// inside them or a little apart.
+class Pile {
+ public:
+  Pile(const SceneOptions& options, double spacing) : scene(options), spacing_(spacing) {
+    constexpr double margin = 0.02;
+    const TriangleMesh crate = make_box({1, 1, 1}), ball = make_icosphere(3);
+    for (int i = 0; i < side * side * layers; ++i) {
+      const bool is_crate = i % 3 != 0;
+      TriangleMesh mesh = is_crate ? crate : ball;
+      if (!is_crate) {
+        for (Vec3d& p : mesh.positions) p = 0.5 * p;
+      }
+      bodies_.push_back(scene.add(mesh, {.margin = margin, .solid = true}));
+    }
+    TriangleMesh floor = make_box({30, 1, 30}, 10);
+    for (Vec3d& p : floor.positions) p.y -= 0.5;
+    scene.add(floor, {.is_static = true, .margin = margin, .solid = true});
+  }
+
+  void advance() {
+    for (int i = 0; i < static_cast<int>(bodies_.size()); ++i) {
+      const auto around = [&](double size) { return random_.uniform(-size, size); };
+      const Vec3d place{static_cast<double>(i % side), static_cast<double>(i / (side * side)),
+                        static_cast<double>(i / side % side)};
+      const Vec3d shift{around(0.01), around(0.01), around(0.01)};
+      scene.set_transform(bodies_[static_cast<std::size_t>(i)],
+                          RigidTransform::from_quaternion(around(0.01), around(0.01), around(0.01), 1,
+                                                          spacing_ * (place + Vec3d{0, 0.5, 0}) + shift));
+    }
+  }
+
+  Scene scene;
+
+ private:
+  static constexpr int side = 10, layers = 4;
+  std::vector<ObjectId> bodies_;
+  double spacing_;
+  RandomNumbers random_{7};
+};
+
+/// What a plain loop finds: a normal and at most four points for each pair of objects.
+struct OwnPoint {
+  Vec3d position;
+  double depth = 0;
+};
+struct OwnManifold {
+  ObjectId a, b;
+  Vec3d normal{};
+  std::array<OwnPoint, 4> points{};
+  std::size_t count = 0;
+};
+
+/// The deepest point, the farthest from it, the farthest from their line, and that on the other side.
+void reduce(std::span<const OwnPoint> found, OwnManifold& manifold) {
+  const auto add_largest = [&](const auto& value) {
+    double most = 0;
+    const OwnPoint* best = nullptr;
+    for (const OwnPoint& point : found) {
+      if (const double v = value(point); best == nullptr || v > most) {
+        most = v;
+        best = &point;
+      }
+    }
+    if (manifold.count == 0 || most > 1e-6) manifold.points[manifold.count++] = *best;
+  };
+  add_largest([](const OwnPoint& p) { return p.depth; });
+  const Vec3d first = manifold.points[0].position;
+  add_largest([&](const OwnPoint& p) { return squared_norm(p.position - first); });
+  if (manifold.count < 2) return;
+  const Vec3d across = cross(manifold.normal, manifold.points[1].position - first);
+  add_largest([&](const OwnPoint& p) { return dot(p.position - first, across); });
+  add_largest([&](const OwnPoint& p) { return -dot(p.position - first, across); });
+}
+
+/// A manifold for each curve, and for each pair of objects within the margins.
+void find_own_manifolds(const DetectResult& result, std::vector<OwnPoint>& points,
+                        std::vector<OwnManifold>& manifolds) {
+  manifolds.clear();
+  for (const IntersectionCurve& curve : result.curves) {
+    points.clear();
+    for (const std::uint32_t i : result.contacts_of(curve)) {
+      for (const ContactPoint& p : result.points_of(result.contacts[i]))
+        points.push_back({p.position, curve.depth});
+    }
+    reduce(points, manifolds.emplace_back(OwnManifold{curve.a, curve.b, curve.normal}));
+  }
+  for (const ContactGroup& group : result.proximity_groups) {
+    points.clear();
+    const ProximityPair* nearest = nullptr;
+    for (const ProximityPair& p : result.proximity_pairs_of(group)) {
+      points.push_back({0.5 * (p.point_a + p.point_b), -p.distance});
+      if (nearest == nullptr || p.distance < nearest->distance) nearest = &p;
+    }
+    reduce(points, manifolds.emplace_back(OwnManifold{group.a, group.b, nearest->normal}));
+  }
+}
+
+}  // namespace
+
+void run_game(const Choice& choice, const std::string& kinds, Output& output) {
+  const auto contacts = kinds == "penetration" ? std::optional(ContactKinds::penetration)
+                        : kinds == "proximity" ? std::optional(ContactKinds::proximity)
+                                               : std::nullopt;
+  if (!contacts) throw Error("a game has penetration or proximity, not '" + kinds + "'");
+  SceneOptions options;
+  options.threads = 1;
+  options.contacts = *contacts;
+  Pile pile(options, *contacts == ContactKinds::penetration ? 0.99 : 1.03);
+  DetectRequest with_manifolds;
+  with_manifolds.manifolds = true;
+  std::vector<double> plain_times, with_times, manifold_times, own_times;
+  std::vector<OwnPoint> points;
+  std::vector<OwnManifold> own;
+  double manifolds = 0;
+  for (std::size_t round = 0; round < choice.rounds; ++round) {
+    pile.advance();
+    double start = wall_milliseconds();
+    pile.scene.detect();
+    plain_times.push_back(wall_milliseconds() - start);
+    start = wall_milliseconds();
+    find_own_manifolds(pile.scene.result(), points, own);
+    own_times.push_back(wall_milliseconds() - start);
+    // Two steps in a row, so that the manifolds of the second one stay.
+    pile.scene.detect(with_manifolds);
+    pile.advance();
+    start = wall_milliseconds();
+    const DetectResult& result = pile.scene.detect(with_manifolds);
+    with_times.push_back(wall_milliseconds() - start);
+    manifold_times.push_back(1e3 * result.stats.manifold_seconds);
+    manifolds += static_cast<double>(result.manifolds.size()) / static_cast<double>(choice.rounds);
+  }
+  output.value("manifolds", manifolds);
+  output.value("milliseconds", quantile(plain_times, 0.5));
+  output.value("milliseconds with manifolds", quantile(with_times, 0.5));
+  output.value("milliseconds of manifolds", quantile(manifold_times, 0.5));
+  output.value("milliseconds of a plain loop", quantile(own_times, 0.5));
+}
+
+}  // namespace supple::benchmarks
