@@ -19,7 +19,7 @@ scene.add(mesh, octree={"leaf_sise": 8})  # wrong
 supple.Scene(contacs="proximity")  # wrong
 supple.Scene(contacts={"proximty"})  # wrong
 supple.Scene(broad_phase="grids")  # wrong
-supple.Scene(broad_phase=supple.BroadPhaseMethod.grid, undecided="report", depths="deepest")
+supple.Scene(broad_phase=supple.BroadPhaseMethod.grid, undecided="report", curves=True)
 supple.Scene(broad_phase=supple.FeatureKind.edge)  # wrong
 
 result = scene.detect(
@@ -27,7 +27,7 @@ result = scene.detect(
 )
 scene.detect(max_contact=10)  # wrong
 scene.detect(broad_phase="grid")  # wrong
-scene.search(contacts="penetration", depths="deepest").contained_part  # wrong
+scene.search(contacts="penetration", curves=True).contained_part  # wrong
 result.contcts  # wrong
 result.contacts, result.intersection, result.proximity, result.continuous, result.curves, result.events
 for contact in result.contacts:
