@@ -44,8 +44,9 @@ struct TriangleMesh {
 /// Coordinates keep the precision of the file, and ids keep its order: vertex i is the i-th vertex of the
 /// file. Texture and normal ids are ignored. Unused vertices stay. The lines of an OBJ file become edges,
 /// n - 1 for a polyline of n vertices, and its points become points; so do the edges of a PLY file. A face of
-/// two corners is an edge, and a face of one corner is a point, but not in STL. STL has no ids: corners with
-/// equal coordinates become one vertex, numbered by first use.
+/// two corners is an edge, and a face of one corner is a point, but not in STL. Faces of OFF and PLY without
+/// corners are left out. STL has no ids: corners with equal coordinates become one vertex, numbered by first
+/// use.
 ///
 /// A polygon of n corners becomes n - 2 triangles, in file order, that cover the inside of its outline once.
 /// They are the fan around its first corner where this fan stays inside, as in convex polygons. The outline

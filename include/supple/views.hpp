@@ -189,13 +189,14 @@ class PositionsView {
   bool is_double_ = true;
 };
 
-/// The vertex ids of `TrianglesView`.
+/// The vertex ids of `TrianglesView`: `uint16_t`, and all integers of 32 and 64 bits, such as `int`, `long`,
+/// `long long` and `size_t`.
 template <class Integer>
-concept VertexIndex = std::same_as<Integer, std::uint32_t> || std::same_as<Integer, std::int32_t> ||
-    std::same_as<Integer, std::uint16_t> || std::same_as<Integer, std::int64_t>;
+concept VertexIndex = std::integral<Integer> &&
+    (sizeof(Integer) == 4 || sizeof(Integer) == 8 || std::same_as<Integer, std::uint16_t>);
 
-/// Triangles in the user's memory as three vertex ids each: `uint32_t`, `int32_t`, `uint16_t` or `int64_t`,
-/// in any layout. It converts from the same ranges, matrices, and pointers with strides as `PositionsView`,
+/// Triangles in the user's memory as three vertex ids each: `uint16_t`, or integers of 32 or 64 bits, in any
+/// layout. It converts from the same ranges, matrices, and pointers with strides as `PositionsView`,
 /// with ids instead of coordinates: `std::vector<Triangle>`, packed ids, `Eigen::MatrixX3i`.
 class TrianglesView {
  public:

@@ -21,7 +21,8 @@ struct AnimationClip {
 ///
 /// Everything is evaluated in double, with the same bits on every machine: node transforms by steps, linearly
 /// (rotations by spherical interpolation) or by cubic splines; morph targets before skins; the weights of a
-/// vertex are divided by their sum. A vertex keeps its id, so `mesh().triangles` are those of every pose.
+/// vertex are divided by their sum. ufbx evaluates FBX, also with the same bits: layers, curves, pivots, and
+/// curves that go on beyond their keys. A vertex keeps its id, so `mesh().triangles` are those of every pose.
 class AnimatedMesh {
  public:
   /// Reads a file as `read_mesh_file` does, with its animations. Files of formats without animations have no
@@ -35,7 +36,8 @@ class AnimatedMesh {
   std::span<const AnimationClip> clips() const;
 
   /// Computes the positions of all vertices at a time, in seconds, of the clip with this index. Before its
-  /// first key and after its last key, a value stays that of this key. Throws `Error` when there is no such
+  /// first key and after its last key, a value stays that of this key; of FBX, before and after the clip.
+  /// Throws `Error` when there is no such
   /// clip, when `positions` has not one element for each vertex, or when the time is not finite. Cost: in
   /// proportion to the vertices, their morph targets and joints, and the nodes. Can be called from several
   /// threads at once.

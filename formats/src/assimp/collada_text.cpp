@@ -45,9 +45,7 @@ std::uint64_t width_of(const pugi::xml_node& accessor, std::uint64_t stride) {
 void parse(std::string_view bytes, const std::string& file, pugi::xml_document& document) {
   constexpr unsigned options = pugi::parse_default | pugi::parse_trim_pcdata;
   const pugi::xml_parse_result result = document.load_buffer(bytes.data(), bytes.size(), options);
-  if (!result)
-    fail("cannot read " + file + ": byte " + std::to_string(result.offset) + ": " +
-         one_line(result.description()));
+  if (!result) fail(file + ", byte " + std::to_string(result.offset) + ": " + one_line(result.description()));
 }
 
 std::string text_of(const pugi::xml_document& document) {

@@ -41,6 +41,8 @@ inline double acos(double x) {
 }  // namespace supple::ufbx_math
 
 #define UFBX_STATIC
+// Without undefined shifts and unaligned loads, which ufbx otherwise leaves to x86 processors.
+#define UFBX_UBSAN 1
 #define ufbx_abi_data extern
 #define ufbx_abi_data_definition
 #define ufbx_abi_data_def

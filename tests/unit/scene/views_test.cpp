@@ -132,6 +132,10 @@ TEST(TrianglesViews, ReadAllKindsOfIds) {
   EXPECT_EQ(second(std::vector<std::int32_t>{0, 1, 2, 3, 4, 5}), expected);
   EXPECT_EQ(second(std::vector<std::uint16_t>{0, 1, 2, 3, 4, 5}), expected);
   EXPECT_EQ(second(std::vector<std::int64_t>{0, 1, 2, 3, 4, 5}), expected);
+  EXPECT_EQ(second(std::vector<long>{0, 1, 2, 3, 4, 5}), expected);
+  EXPECT_EQ(second(std::vector<long long>{0, 1, 2, 3, 4, 5}), expected);
+  EXPECT_EQ(second(std::vector<std::size_t>{0, 1, 2, 3, 4, 5}), expected);
+  EXPECT_EQ(second(std::vector<unsigned long long>{0, 1, 2, 3, 4, 5}), expected);
   EXPECT_EQ(second(std::vector<std::array<std::uint16_t, 3>>{{0, 1, 2}, {3, 4, 5}}), expected);
   EXPECT_EQ(second(std::vector<std::int32_t>{0, 1, 2, -3, -4, -5}), (Ids{-3, -4, -5}));
   EXPECT_EQ(second(std::vector<std::uint32_t>{0, 1, 2, ~0u, 4, 5}), (Ids{0xffffffff, 4, 5}));
@@ -140,6 +144,9 @@ TEST(TrianglesViews, ReadAllKindsOfIds) {
   columns << 0, 1, 2, 3, 4, 5;
   EXPECT_EQ(second(columns), expected);
   EXPECT_EQ(second(Eigen::MatrixXi(columns.transpose())), expected);
+  EXPECT_EQ(second(Eigen::Matrix<long long, Eigen::Dynamic, 3>(columns.cast<long long>())), expected);
+  EXPECT_EQ(second(Eigen::Matrix<Eigen::Index, 3, Eigen::Dynamic>(columns.transpose().cast<Eigen::Index>())),
+            expected);
   const std::uint16_t strided[] = {0, 9, 1, 9, 2, 9, 9, 3, 9, 4, 9, 5, 9, 9};
   EXPECT_EQ(second(TrianglesView(strided, 2, 14, 4)), expected);
   EXPECT_THROW(TrianglesView(std::vector<int>(4)), Error);
@@ -163,6 +170,8 @@ TEST(TrianglesViews, WrongIdsAreErrorsThatNameThem) {
             "net: triangle 0 uses vertex 4, but there are 4 vertices, numbered from 0");
   EXPECT_EQ(message(std::vector<std::int64_t>{0, 1, std::int64_t{1} << 32}),
             "net: triangle 0 uses vertex 4294967296, but there are 4 vertices, numbered from 0");
+  EXPECT_EQ(message(std::vector<unsigned long long>{0, 1, ~0ull}),
+            "net: triangle 0 uses vertex -1, but there are 4 vertices, numbered from 0");
 }
 
 Eigen::MatrixXd matrix_of(const std::vector<Vec3d>& points, double shift) {
