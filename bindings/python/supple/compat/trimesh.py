@@ -96,8 +96,28 @@ class _Entry:
         with np.errstate(invalid="ignore"):
             self.center, self.half = 0.5 * lowest + 0.5 * highest, 0.5 * highest - 0.5 * lowest
         self.half = np.nextafter(self.half, np.inf)
+        reach = float(np.abs(self.center).max() + self.half.max())
+        self._numbers = (self.center.tolist(), self.half.tolist(), reach) if math.isfinite(reach) else None
         self.box: Any = None  #: of the mesh where it is, as lists
         self._parts: npt.NDArray[np.uint32] | None = None
+
+    def placed_box(self) -> tuple[list[float], list[float]]:
+        """The lowest and the highest corner of a box around the mesh where it is."""
+        if self._numbers is None:
+            return [math.inf] * 3, [math.inf] * 3
+        (x, y, z), (dx, dy, dz), reach = self._numbers
+        lowest, highest = [], []
+        for a, b, c, shift in self.transform.tolist()[:3]:
+            size_a, size_b, size_c = abs(a), abs(b), abs(c)
+            half = size_a * dx + size_b * dy + size_c * dz
+            # Rounded corners must not hide a pair.
+            half += 1e-12 * ((size_a + size_b + size_c) * reach + abs(shift))
+            center = a * x + b * y + c * z + shift
+            lowest.append(center - half)
+            highest.append(center + half)
+        if not math.isfinite(sum(lowest) + sum(highest)):
+            raise ValueError(f"the transform of {self.mesh.name} is not finite, or moves it too far")
+        return lowest, highest
 
     def one_vertex_of_each_part(self) -> npt.NDArray[np.uint32]:
         if self._parts is None:
@@ -115,7 +135,6 @@ class _Places:
         self.boxes, self.changed = np.empty((count, 2, 3), np.float32), np.empty(count, np.int64)
         self.centers = np.array([entry.center for entry in self.entries]).reshape(-1, 3)
         self.halves = np.array([entry.half for entry in self.entries]).reshape(-1, 3)
-        self.transforms = np.empty((count, 4, 4))
         self._index = {id(entry): i for i, entry in enumerate(self.entries)}
         self._moved = set(range(count))
 
@@ -127,16 +146,12 @@ class _Places:
         if not self._moved:
             return self
         moved = list(self._moved)
-        self.transforms[moved] = transforms = np.array([self.entries[i].transform for i in moved])
-        turned, halves = transforms[:, :3, :3], self.halves[moved][:, :, None]
-        centers = (turned @ self.centers[moved][:, :, None])[:, :, 0] + transforms[:, :3, 3]
-        halves = (np.abs(turned) @ halves)[:, :, 0]
-        largest = float((np.abs(centers) + halves).max())
-        if not math.isfinite(largest):
-            centers[~np.isfinite(centers + halves)], halves[~np.isfinite(halves)] = np.inf, 0
-            largest = float(np.abs(centers[np.isfinite(centers)]).max(initial=0) + halves.max())
-        # Rounded corners must not hide a pair.
-        self.boxes[moved] = boxes = _core.enclosing_boxes(centers - halves, centers + halves, 1e-12 * largest)
+        # A few numbers for each, which plain Python computes faster than arrays.
+        placed = [self.entries[i].placed_box() for i in moved]
+        boxes = _core.enclosing_boxes(
+            np.array([lowest for lowest, _ in placed]), np.array([highest for _, highest in placed]), 0
+        )
+        self.boxes[moved] = boxes
         self.version = self.changed[moved] = next(_changes)
         for i, box in zip(moved, boxes.tolist()):
             self.entries[i].box = box
@@ -145,8 +160,9 @@ class _Places:
 
     def spheres(self) -> tuple[Floats, Floats]:
         """The centers and radii of spheres around the entries, which turn with them."""
-        turned = self.transforms[:, :3, :3]
-        centers = (turned @ self.centers[:, :, None])[:, :, 0] + self.transforms[:, :3, 3]
+        transforms = np.array([entry.transform for entry in self.entries]).reshape(-1, 4, 4)
+        turned = transforms[:, :3, :3]
+        centers = (turned @ self.centers[:, :, None])[:, :, 0] + transforms[:, :3, 3]
         is_rigid = np.abs(turned @ turned.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2), initial=0) < 1e-6
         scale = np.where(is_rigid, 1 + 1e-6, np.sqrt((turned**2).sum(axis=(1, 2))))
         return centers, np.linalg.norm(self.halves, axis=1) * scale
