@@ -80,7 +80,7 @@ class Described:
                         for entity in header["entities"] if entity["kind"] == "struct"}
         self.enums = {entity["name"]: entity for header in api["headers"] for entity in header["entities"]
                       if entity["kind"] == "enum"}
-        self.words = {name.split("::", 1)[-1] if name.startswith("viewer::") else name: re.findall(r'"(\w+)"', words)
+        self.words = {name.split("::", 1)[-1] if name.startswith("viewer::") else name: re.findall(r'"([^"]+)"', words)
                       for name, words in re.findall(r"constexpr std::array words<([\w:]+)>\{(.*?)\}", text, re.DOTALL)}
         self.blocks = dict(re.findall(r"\nstruct Description<(?:viewer::)?([\w:]+)> \{(.*?)\n\};", text, re.DOTALL))
 

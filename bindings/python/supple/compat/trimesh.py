@@ -158,14 +158,14 @@ class _Places:
         self._moved = set()
         return self
 
-    def spheres(self) -> tuple[Floats, Floats]:
-        """The centers and radii of spheres around the entries, which turn with them."""
+    def oriented(self) -> tuple[Floats, Floats, Floats]:
+        """Of boxes that turn with the entries: centers (n, 3), half edges and their directions (n, 3, 3)."""
         transforms = np.array([entry.transform for entry in self.entries]).reshape(-1, 4, 4)
         turned = transforms[:, :3, :3]
         centers = (turned @ self.centers[:, :, None])[:, :, 0] + transforms[:, :3, 3]
-        is_rigid = np.abs(turned @ turned.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2), initial=0) < 1e-6
-        scale = np.where(is_rigid, 1 + 1e-6, np.sqrt((turned**2).sum(axis=(1, 2))))
-        return centers, np.linalg.norm(self.halves, axis=1) * scale
+        columns = turned.transpose(0, 2, 1)
+        lengths = np.linalg.norm(columns, axis=2, keepdims=True)
+        return centers, columns * self.halves[:, :, None], columns / np.where(lengths > 0, lengths, 1)
 
 
 #: The distance, the two entries and the record; infinite and None without any.
@@ -299,15 +299,25 @@ class _World:
 
 
 def _bounds(a: _Places, b: _Places) -> Floats:
-    """Lower bounds of the distances of all entries of a to those of b: of their boxes, and of their spheres."""
-    (centers_a, radii_a), (centers_b, radii_b) = a.spheres(), b.spheres()
+    """Lower bounds of the distances of all entries of a to those of b: of their boxes along the axes, and of
+    their boxes that turn with them, along the edges of these."""
     with np.errstate(invalid="ignore", over="ignore"):
         lows = np.subtract(a.boxes[:, None, 0], b.boxes[None, :, 1], dtype=np.float64)
         highs = np.subtract(b.boxes[None, :, 0], a.boxes[:, None, 1], dtype=np.float64)
-        boxes = np.linalg.norm(np.maximum(0, np.maximum(lows, highs)), axis=2)
-        between = np.linalg.norm(centers_a[:, None] - centers_b[None, :], axis=2)
-        spheres = between * (1 - 1e-9) - (radii_a[:, None] + radii_b[None, :])
-        bounds: Floats = np.fmax(np.fmax(boxes, spheres), 0)
+        bounds: Floats = np.linalg.norm(np.maximum(0, np.maximum(lows, highs)), axis=2)
+        (centers_a, edges_a, axes_a), (centers_b, edges_b, axes_b) = a.oriented(), b.oriented()
+        between = centers_a[:, None] - centers_b[None, :]
+        # More than rounding loses, also of coordinates that are far from 0.
+        slack = 1e-12 * (np.abs(centers_a).sum(axis=1)[:, None] + np.abs(centers_b).sum(axis=1))
+        for axes, own, others, shape in (
+            (axes_a, edges_a, edges_b, "ikc,jlc->ijkl"),
+            (axes_b, edges_b, edges_a, "jkc,ilc->ijkl"),
+        ):
+            gaps = np.abs(np.einsum("ijc,ikc->ijk" if shape[0] == "i" else "ijc,jkc->ijk", between, axes))
+            radii = np.abs(np.einsum("nkc,nlc->nkl", axes, own)).sum(axis=2)
+            gaps -= radii[:, None] if shape[0] == "i" else radii[None, :]
+            gaps -= np.abs(np.einsum(shape, axes, others)).sum(axis=3)
+            bounds = np.fmax(bounds, gaps.max(axis=2) * (1 - 1e-9) - slack)
     return bounds
 
 
