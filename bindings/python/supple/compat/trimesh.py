@@ -278,7 +278,7 @@ class _World:
 
         def attempt(i: int) -> None:
             nonlocal best, nearest, record
-            if i in tried or not least[i] * (1 - 1e-9) <= best:
+            if best == 0 or i in tried or not least[i] * (1 - 1e-9) <= best:
                 return
             tried.add(i)
             pair = a[i // len(b)], b[i % len(b)]
@@ -292,8 +292,6 @@ class _World:
         near = np.flatnonzero(least * (1 - 1e-9) <= best)
         for i in near[np.argsort(least[near], kind="stable")].tolist():
             attempt(i)
-            if best == 0:
-                break
         self._last_nearest = None if nearest is None else a.index(nearest[0]) * len(b) + b.index(nearest[1])
         return best, nearest, record
 
