@@ -286,6 +286,13 @@ class _World:
             if found is not None and (record is None or found.distance < best):
                 best, nearest, record = float(found.distance), pair, found
 
+        # Whether surfaces touch is decided faster than their distance.
+        last = self._last_nearest
+        for i in sorted(np.flatnonzero(least <= 0).tolist(), key=lambda i: i != last):
+            pair = a[i // len(b)], b[i % len(b)]
+            if self.core.any_contact(self.object(pair[0])._id, self.object(pair[1])._id, None):
+                self._last_nearest = i
+                return 0.0, pair, None
         if self._last_nearest is not None and self._last_nearest < least.size:
             attempt(self._last_nearest)  # the last answer, wherever it is now, excludes most others
         attempt(int(np.nanargmin(least)))
@@ -387,7 +394,9 @@ class CollisionManager:
         external, place = self._external(mesh, transform)
         places = self._places.update()
         found = self._world.nearest(_bounds(places, place), places.entries, [external])
-        distance, names, data = self._distance(found, self._world, {**self._names, id(external): _EXTERNAL})
+        distance, names, data = self._distance(
+            found, self._world, {**self._names, id(external): _EXTERNAL}, return_data
+        )
         return _answer(distance, None if names is None else names[0], data, return_name, return_data)
 
     def min_distance_internal(
@@ -405,7 +414,7 @@ class CollisionManager:
             bounds[at, at] = np.nan
             bounds[np.arange(len(entries)) != at] = np.nan
         found = self._world.nearest(bounds, entries, entries)
-        distance, names, data = self._distance(found, self._world, self._names)
+        distance, names, data = self._distance(found, self._world, self._names, return_data)
         return _answer(
             distance, None if names is None else tuple(sorted(names)), data, return_names, return_data
         )
@@ -418,7 +427,7 @@ class CollisionManager:
         own, other = self._places.update(), other_manager._places.update()
         found = world.nearest(_bounds(own, other), own.entries, other.entries)
         names = {**self._names, **other_manager._names}
-        return _answer(*self._distance(found, world, names), return_names, return_data)
+        return _answer(*self._distance(found, world, names, return_data), return_names, return_data)
 
     def _change(self) -> None:
         self._names = {id(entry): name for name, entry in self._entries.items()}
@@ -472,13 +481,17 @@ class CollisionManager:
 
     @staticmethod
     def _distance(
-        found: Nearest, world: _World, names: dict[int, str]
+        found: Nearest, world: _World, names: dict[int, str], return_data: bool
     ) -> tuple[float, tuple[str, str] | None, DistanceData | None]:
         distance, nearest, record = found
-        if nearest is None or record is None:
+        if nearest is None:
             return distance, None, None
         a, b = names[id(nearest[0])], names[id(nearest[1])]
+        if not return_data:
+            return distance, (a, b), None
         objects = [world.object(each) for each in nearest]
+        record = record or world.scene.distance(*objects)
+        assert record is not None
         points = [record.point_a, record.point_b]
         if objects[0].index != int(record.object_a):
             points.reverse()
@@ -486,7 +499,8 @@ class CollisionManager:
             int(world.scene.closest([point], object=each)["triangle"][0])
             for point, each in zip(points, objects)
         ]
-        return distance, (a, b), DistanceData((a, b), (faces[0], faces[1]), (points[0], points[1]), distance)
+        data = DistanceData((a, b), (faces[0], faces[1]), (points[0], points[1]), distance)
+        return distance, (a, b), data
 
 
 def _contact_data(
