@@ -16,7 +16,7 @@ came near each other. `set_transform` takes effect in the next question.
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,9 +24,6 @@ from .._meshes import Mesh, as_mesh
 from .._object import Object
 from .._scene import Scene
 from ._world import IDENTITY, Entry, Floats, Nearest, Places, World, lower_bounds, near_entries
-
-if TYPE_CHECKING:
-    pass
 
 _EXTERNAL = "__external"
 _KEPT_EXTERNALS = 8
