@@ -80,7 +80,7 @@ class Described:
                         for entity in header["entities"] if entity["kind"] == "struct"}
         self.enums = {entity["name"]: entity for header in api["headers"] for entity in header["entities"]
                       if entity["kind"] == "enum"}
-        self.words = {name.split("::", 1)[-1] if name.startswith("viewer::") else name: re.findall(r'"(\w+)"', words)
+        self.words = {name.split("::", 1)[-1] if name.startswith("viewer::") else name: re.findall(r'"([^"]+)"', words)
                       for name, words in re.findall(r"constexpr std::array words<([\w:]+)>\{(.*?)\}", text, re.DOTALL)}
         self.blocks = dict(re.findall(r"\nstruct Description<(?:viewer::)?([\w:]+)> \{(.*?)\n\};", text, re.DOTALL))
 
@@ -89,9 +89,9 @@ class Described:
         block, fields = self.blocks[struct], {each["name"]: each for each in self.structs[struct]["fields"]}
         found = []
         # A member begins with its name: `.name = "x"`, or `"x", &Struct::x` as arguments of a function.
-        parts = re.split(r'\.name = "(?=\w+",)|(?=\("\w+",\s*&)|(?=visitor, "\w+",)', block)
+        parts = re.split(r'\.name = "(?=\w+",)|(?=\(\s*"\w+",\s*&)|(?=visitor,\s*"\w+",)', block)
         for part in parts[1:]:
-            key = re.match(r'(?:\(|visitor, )?"?(\w+)"', part)
+            key = re.match(r'(?:\(\s*|visitor,\s*)?"?(\w+)"', part)
             member = re.search(r"&\w+(?:::\w+)*::(\w+)", part)
             if not key or not member or member[1] not in fields:
                 continue
@@ -182,10 +182,9 @@ def keywords_class(struct, doc, items, total=False):
     return "\n".join(lines)
 
 
-def columns(described, struct, suffix=""):
+def columns(described, struct):
     """The columns of a record, as records.hpp makes them: (name, type, documentation)."""
     for _, type_, key, doc, _ in described.members(struct):
-        key += suffix
         array = re.fullmatch(r"std::array<(.+), (\d+)>", type_)
         enum = next((each for each in (type_, f"{struct}::{type_}") if each in described.words), "")
         if type_ == "ObjectId":
@@ -204,7 +203,7 @@ def columns(described, struct, suffix=""):
             yield key, f"npt.NDArray[np.{SCALARS[array[1]]}]", doc
         elif array:
             for i in range(int(array[2])):
-                yield from columns(described, array[1], f"_{i}")
+                yield from ((f"{name}_{i}", of, text) for name, of, text in columns(described, array[1]))
         else:
             yield from columns(described, type_)
 

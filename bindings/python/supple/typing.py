@@ -297,6 +297,8 @@ class MassSpringOptions(TypedDict, total=False):
     'Mass of each vertex'
     stiffness: Number
     'N/m'
+    rest_length: Number
+    ''
     connect_pieces: bool | np.bool_
     'Springs also connect the pieces of the mesh, so that they do not drift apart'
     damping: Number
@@ -357,6 +359,8 @@ class MassSpringMotion(TypedDict, total=False):
     'Mass of each vertex'
     stiffness: Number
     'N/m'
+    rest_length: Number
+    ''
     connect_pieces: bool | np.bool_
     'Springs also connect the pieces of the mesh, so that they do not drift apart'
     damping: Number
@@ -616,6 +620,10 @@ class StepStats(TypedDict):
     'Pairs of octree nodes in the narrow phase; depends on the number of threads'
     boxes_tested: int
     'Tests of two volumes in nodes and leaves; depends on the number of threads'
+    candidate_pairs: int
+    'pairs'
+    vertex_face_candidates: int
+    'pairs'
     edge_edge_candidates: int
     'pairs'
     exact_fallbacks: int
@@ -1386,63 +1394,63 @@ class TriangleIntersection(Record):
     'Points of the intersection: 0 to 6'
     position_0: npt.NDArray[np.float64]
     'The point'
-    feature_a_0_kind: Literal['vertex', 'edge', 'face']
+    feature_a_kind_0: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle a on which the point lies'
-    feature_a_0_index: np.uint8
+    feature_a_index_0: np.uint8
     'Smallest part of triangle a on which the point lies'
-    feature_b_0_kind: Literal['vertex', 'edge', 'face']
+    feature_b_kind_0: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle b on which the point lies'
-    feature_b_0_index: np.uint8
+    feature_b_index_0: np.uint8
     'Smallest part of triangle b on which the point lies'
     position_1: npt.NDArray[np.float64]
     'The point'
-    feature_a_1_kind: Literal['vertex', 'edge', 'face']
+    feature_a_kind_1: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle a on which the point lies'
-    feature_a_1_index: np.uint8
+    feature_a_index_1: np.uint8
     'Smallest part of triangle a on which the point lies'
-    feature_b_1_kind: Literal['vertex', 'edge', 'face']
+    feature_b_kind_1: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle b on which the point lies'
-    feature_b_1_index: np.uint8
+    feature_b_index_1: np.uint8
     'Smallest part of triangle b on which the point lies'
     position_2: npt.NDArray[np.float64]
     'The point'
-    feature_a_2_kind: Literal['vertex', 'edge', 'face']
+    feature_a_kind_2: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle a on which the point lies'
-    feature_a_2_index: np.uint8
+    feature_a_index_2: np.uint8
     'Smallest part of triangle a on which the point lies'
-    feature_b_2_kind: Literal['vertex', 'edge', 'face']
+    feature_b_kind_2: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle b on which the point lies'
-    feature_b_2_index: np.uint8
+    feature_b_index_2: np.uint8
     'Smallest part of triangle b on which the point lies'
     position_3: npt.NDArray[np.float64]
     'The point'
-    feature_a_3_kind: Literal['vertex', 'edge', 'face']
+    feature_a_kind_3: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle a on which the point lies'
-    feature_a_3_index: np.uint8
+    feature_a_index_3: np.uint8
     'Smallest part of triangle a on which the point lies'
-    feature_b_3_kind: Literal['vertex', 'edge', 'face']
+    feature_b_kind_3: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle b on which the point lies'
-    feature_b_3_index: np.uint8
+    feature_b_index_3: np.uint8
     'Smallest part of triangle b on which the point lies'
     position_4: npt.NDArray[np.float64]
     'The point'
-    feature_a_4_kind: Literal['vertex', 'edge', 'face']
+    feature_a_kind_4: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle a on which the point lies'
-    feature_a_4_index: np.uint8
+    feature_a_index_4: np.uint8
     'Smallest part of triangle a on which the point lies'
-    feature_b_4_kind: Literal['vertex', 'edge', 'face']
+    feature_b_kind_4: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle b on which the point lies'
-    feature_b_4_index: np.uint8
+    feature_b_index_4: np.uint8
     'Smallest part of triangle b on which the point lies'
     position_5: npt.NDArray[np.float64]
     'The point'
-    feature_a_5_kind: Literal['vertex', 'edge', 'face']
+    feature_a_kind_5: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle a on which the point lies'
-    feature_a_5_index: np.uint8
+    feature_a_index_5: np.uint8
     'Smallest part of triangle a on which the point lies'
-    feature_b_5_kind: Literal['vertex', 'edge', 'face']
+    feature_b_kind_5: Literal['vertex', 'edge', 'face']
     'Smallest part of triangle b on which the point lies'
-    feature_b_5_index: np.uint8
+    feature_b_index_5: np.uint8
     'Smallest part of triangle b on which the point lies'
     normal: npt.NDArray[np.float64]
     'Unit vector from b to a'
@@ -1452,7 +1460,7 @@ class UntestedKind(Record):
     'A kind of contacts for which there was nothing to test.'
 
     __slots__ = ()
-    kind: Literal['none', 'intersection', 'continuous', 'proximity', 'penetration']
+    kind: Literal['none', 'intersection', 'continuous', 'intersection,continuous', 'proximity', 'intersection,proximity', 'continuous,proximity', 'intersection,continuous,proximity', 'penetration', 'intersection,penetration', 'continuous,penetration', 'intersection,continuous,penetration', 'proximity,penetration', 'intersection,proximity,penetration', 'continuous,proximity,penetration', 'intersection,continuous,proximity,penetration']
     'Kind of contacts'
     reason: Literal['no_objects', 'no_elements', 'not_finite', 'no_solid', 'no_motion', 'no_margin', 'one_object', 'shared_vertex', 'all_static', 'groups', 'filter']
     'Why there was nothing to test'

@@ -201,6 +201,11 @@ def test_managers_keep_what_stays(at, monkeypatch):
     for matrix in (np.eye(3), np.diag([1, 1, 1, 2.0])):
         with pytest.raises(ValueError, match="transform"):
             own.set_transform("box", matrix)
+    own.set_transform("box", np.diag([1, np.nan, 1, 1]))
+    with pytest.raises(ValueError, match="the transform of box is not finite"):
+        own.in_collision_internal()
+    with pytest.raises(ValueError, match="the transform of __external is not finite"):
+        own.in_collision_single(box, np.diag([1, np.inf, 1, 1]))
 
 
 def test_contacts_are_as_deep_as_their_curve_and_their_vertices(at):

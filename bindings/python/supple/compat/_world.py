@@ -1,0 +1,273 @@
+"""The scenes of collision managers: what they keep from question to question."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from operator import le
+from typing import TYPE_CHECKING, Any, Iterable, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .._meshes import Mesh, fault_of_solid, split_into_parts
+from .._object import Object
+from .._scene import Scene
+
+if TYPE_CHECKING:
+    from ..typing import ProximityPair
+
+FEW_PAIRS = 4096  #: of two managers, for which one comparison of all is faster than the broad phase
+IDENTITY = np.eye(4)
+_changes = itertools.count(1)
+Floats = npt.NDArray[np.float64]
+
+
+class Entry:
+    """A mesh with its transform."""
+
+    def __init__(self, mesh: Mesh, transform: Floats) -> None:
+        self.mesh, self.transform = mesh, transform
+        self.solid = len(mesh.triangles) > 0 and not fault_of_solid(mesh)
+        self.is_empty = len(mesh.positions) == 0
+        finite = mesh.positions[np.isfinite(mesh.positions).all(axis=1)]
+        lowest, highest = (finite.min(axis=0), finite.max(axis=0)) if len(finite) else np.full((2, 3), np.inf)
+        with np.errstate(invalid="ignore"):
+            self.center, self.half = 0.5 * lowest + 0.5 * highest, 0.5 * highest - 0.5 * lowest
+        self.half = np.nextafter(self.half, np.inf)
+        reach = float(np.abs(self.center).max() + self.half.max())
+        self._numbers = (self.center.tolist(), self.half.tolist(), reach) if math.isfinite(reach) else None
+        self.box: Any = None  #: of the mesh where it is, as lists
+        self._parts: npt.NDArray[np.uint32] | None = None
+
+    def placed_box(self) -> tuple[list[float], list[float]]:
+        """The lowest and the highest corner of a box around the mesh where it is."""
+        if self._numbers is None:
+            return [math.inf] * 3, [math.inf] * 3
+        (x, y, z), (dx, dy, dz), reach = self._numbers
+        lowest, highest = [], []
+        for a, b, c, shift in self.transform.tolist()[:3]:
+            size_a, size_b, size_c = abs(a), abs(b), abs(c)
+            half = size_a * dx + size_b * dy + size_c * dz
+            # Rounded corners must not hide a pair.
+            half += 1e-12 * ((size_a + size_b + size_c) * reach + abs(shift))
+            center = a * x + b * y + c * z + shift
+            lowest.append(center - half)
+            highest.append(center + half)
+        if not math.isfinite(sum(lowest) + sum(highest)):
+            raise ValueError(f"the transform of {self.mesh.name} is not finite, or moves it too far")
+        return lowest, highest
+
+    def one_vertex_of_each_part(self) -> npt.NDArray[np.uint32]:
+        if self._parts is None:
+            self._parts = np.array([part.vertices[0] for part in split_into_parts(self.mesh)], np.uint32)
+        return self._parts
+
+
+class Places:
+    """Where entries are: their boxes, rounded outward to float32, and when they changed."""
+
+    def __init__(self, entries: Iterable[Entry] = ()) -> None:
+        self.entries = list(entries)
+        count = len(self.entries)
+        self.structure = self.version = next(_changes)  #: of the list of entries, and of where they are
+        self.boxes, self.changed = np.empty((count, 2, 3), np.float32), np.empty(count, np.int64)
+        self.centers = np.array([entry.center for entry in self.entries]).reshape(-1, 3)
+        self.halves = np.array([entry.half for entry in self.entries]).reshape(-1, 3)
+        self._index = {id(entry): i for i, entry in enumerate(self.entries)}
+        self._moved = set(range(count))
+
+    def move(self, entry: Entry) -> None:
+        self._moved.add(self._index[id(entry)])
+
+    def update(self) -> Places:
+        """Computes the boxes of entries that moved."""
+        if not self._moved:
+            return self
+        moved = list(self._moved)
+        # A few numbers for each, which plain Python computes faster than arrays.
+        placed = [self.entries[i].placed_box() for i in moved]
+        boxes = _core.enclosing_boxes(
+            np.array([lowest for lowest, _ in placed]), np.array([highest for _, highest in placed]), 0
+        )
+        self.boxes[moved] = boxes
+        self.version = self.changed[moved] = next(_changes)
+        for i, box in zip(moved, boxes.tolist()):
+            self.entries[i].box = box
+        self._moved = set()
+        return self
+
+    def oriented(self) -> tuple[Floats, Floats, Floats]:
+        """Of boxes that turn with the entries: centers (n, 3), half edges and their directions (n, 3, 3)."""
+        transforms = np.array([entry.transform for entry in self.entries]).reshape(-1, 4, 4)
+        turned = transforms[:, :3, :3]
+        centers = (turned @ self.centers[:, :, None])[:, :, 0] + transforms[:, :3, 3]
+        columns = turned.transpose(0, 2, 1)
+        lengths = np.linalg.norm(columns, axis=2, keepdims=True)
+        return centers, columns * self.halves[:, :, None], columns / np.where(lengths > 0, lengths, 1)
+
+
+#: The distance, the two entries and the record; infinite and None without any.
+Nearest: TypeAlias = "tuple[float, tuple[Entry, Entry] | None, ProximityPair | None]"
+
+
+class World:
+    """A scene with the entries that a question was about, and the octrees of their meshes."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.core = scene._core
+        self._known: dict[int, tuple[Entry, Object]] = {}
+        self._placed: dict[int, Floats] = {}
+        self._last: Any = None
+        self._last_nearest: int | None = None
+        self.structure: Any = None
+        self._broad_phase = _core.BroadPhase({})
+        self._seen: tuple[Any, int] = ((), 0)
+        self._overlapping: list[tuple[Entry, Entry]] = []
+
+    def object(self, entry: Entry) -> Object:
+        """The object of an entry, where it is now."""
+        key = id(entry)
+        known = self._known.get(key)
+        if known is None:
+            known = self._known[key] = entry, self.scene.add(entry.mesh, solid=entry.solid)
+            self._placed[key] = IDENTITY
+        if self._placed[key] is not entry.transform:
+            self.core.set_transform(known[1]._id, entry.transform)
+            self._placed[key] = entry.transform
+        return known[1]
+
+    def keep(self, entries: Iterable[Entry]) -> None:
+        """Removes the objects of all other entries."""
+        wanted = {id(entry) for entry in entries}
+        for key in [key for key in self._known if key not in wanted]:
+            self._known.pop(key)[1].remove()
+            del self._placed[key]
+
+    def overlapping(self, *sources: Places) -> list[tuple[Entry, Entry]]:
+        """The pairs of entries whose boxes overlap: of one source, or of two sources with each other."""
+        structure = tuple(each.update().structure for each in sources)
+        version = max(each.version for each in sources)
+        if (structure, version) == self._seen:
+            return self._overlapping
+        first, last = sources[0], sources[-1]
+        if len(sources) == 2 and len(first.entries) * len(last.entries) <= FEW_PAIRS:
+            overlap = first.boxes[:, None, 0] <= last.boxes[:, 1]
+            overlap &= last.boxes[:, 0] <= first.boxes[:, None, 1]
+            found = np.argwhere(overlap.all(axis=2)).tolist()
+        else:
+            found = self._search(structure, sources)
+        self._seen = structure, version
+        self._overlapping = [(first.entries[i], last.entries[j]) for i, j in found]
+        return self._overlapping
+
+    def _search(self, structure: Any, sources: tuple[Places, ...]) -> list[list[int]]:
+        """The same by the broad phase, which searches only the pairs of boxes that changed."""
+        volumes, kinds, dirty = np.concatenate([each.boxes for each in sources]), None, None
+        if len(sources) == 2:
+            kinds = np.repeat(np.arange(2, dtype=np.uint8), [len(each.entries) for each in sources])
+        if structure == self._seen[0]:
+            changed = np.concatenate([each.changed for each in sources]) > self._seen[1]
+            dirty = np.flatnonzero(changed).astype(np.uint32)
+        else:
+            pairs = {} if kinds is None else {"kind_pairs": [(0, 1)]}
+            self._broad_phase = _core.BroadPhase({"threads": 1, **pairs})
+        found = self._broad_phase.of_boxes(volumes, kinds, dirty)
+        if kinds is not None:
+            found[:, 1] -= np.uint32(len(sources[0].entries))
+        return found.tolist()
+
+    def collide(self, pairs: list[tuple[Entry, Entry]], all_pairs: bool) -> list[tuple[Entry, Entry]]:
+        """The pairs that touch, or the first one that is found."""
+        found = []
+        if self._last in pairs and not all_pairs:  # it probably touches still
+            pairs = [self._last, *pairs]
+        for a, b in pairs:
+            if self._touch(a, b):
+                self._last = a, b
+                found.append((a, b))
+                if not all_pairs:
+                    break
+        return found
+
+    def _touch(self, a: Entry, b: Entry) -> bool:
+        ids = self.object(a)._id, self.object(b)._id
+        return self.core.any_contact(*ids, None) or self._contains(b, a) or self._contains(a, b)
+
+    def _contains(self, outer: Entry, inner: Entry) -> bool:
+        """Whether a part of an entry is inside a solid one that it does not touch."""
+        if not outer.solid or inner.is_empty:
+            return False
+        (low, high), (inner_low, inner_high) = outer.box, inner.box
+        is_within = all(map(le, low, inner_low)) and all(map(le, inner_high, high))
+        vertices = inner.one_vertex_of_each_part()
+        if not is_within and len(vertices) == 1:
+            return False
+        points = self.core.positions(self.object(inner)._id)[vertices]
+        return bool((self.scene.inside(points, object=self.object(outer)) > 0).any())
+
+    def first_contact(self, pairs: list[tuple[Entry, Entry]]) -> Nearest | None:
+        """The distance 0 of a pair whose surfaces touch, which takes less time than a distance."""
+        for a, b in [self._last, *pairs] if self._last in pairs else pairs:
+            if self.core.any_contact(self.object(a)._id, self.object(b)._id, None):
+                self._last = a, b
+                return 0.0, (a, b), None
+        return None
+
+    def nearest(self, bounds: Floats, a: list[Entry], b: list[Entry]) -> Nearest:
+        """The nearest pair with its distance; `bounds` are lower bounds of the distances, (len(a), len(b))."""
+        least = bounds.ravel()
+        best, nearest, record = np.inf, None, None
+        tried: set[int] = set()
+        if not least.size or np.isnan(least).all():
+            return best, nearest, record
+
+        def attempt(i: int) -> None:
+            nonlocal best, nearest, record
+            if best == 0 or i in tried or not least[i] * (1 - 1e-9) <= best:
+                return
+            tried.add(i)
+            pair = a[i // len(b)], b[i % len(b)]
+            found = self.scene.distance(self.object(pair[0]), self.object(pair[1]))
+            if found is not None and (record is None or found.distance < best):
+                best, nearest, record = float(found.distance), pair, found
+
+        if self._last_nearest is not None and self._last_nearest < least.size:
+            attempt(self._last_nearest)  # the last answer, wherever it is now, excludes most others
+        attempt(int(np.nanargmin(least)))
+        near = np.flatnonzero(least * (1 - 1e-9) <= best)
+        for i in near[np.argsort(least[near], kind="stable")].tolist():
+            attempt(i)
+        self._last_nearest = None if nearest is None else a.index(nearest[0]) * len(b) + b.index(nearest[1])
+        return best, nearest, record
+
+
+def near_entries(places: Places, place: Places, external: Entry) -> list[tuple[Entry, Entry]]:
+    """The entries whose boxes overlap that of the only one of `place`."""
+    overlap = (places.boxes[:, 0] <= place.boxes[0, 1]) & (place.boxes[0, 0] <= places.boxes[:, 1])
+    return [(places.entries[i], external) for i in np.flatnonzero(overlap.all(axis=1)).tolist()]
+
+
+def lower_bounds(a: Places, b: Places) -> Floats:
+    """Lower bounds of the distances of all entries of a to those of b: of their boxes along the axes, and of
+    their boxes that turn with them, along the edges of these."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        lows = np.subtract(a.boxes[:, None, 0], b.boxes[None, :, 1], dtype=np.float64)
+        highs = np.subtract(b.boxes[None, :, 0], a.boxes[:, None, 1], dtype=np.float64)
+        bounds: Floats = np.linalg.norm(np.maximum(0, np.maximum(lows, highs)), axis=2)
+        (centers_a, edges_a, axes_a), (centers_b, edges_b, axes_b) = a.oriented(), b.oriented()
+        between = centers_a[:, None] - centers_b[None, :]
+        # More than rounding loses, also of coordinates that are far from 0.
+        slack = 1e-12 * (np.abs(centers_a).sum(axis=1)[:, None] + np.abs(centers_b).sum(axis=1))
+        for axes, own, others, shape in (
+            (axes_a, edges_a, edges_b, "ikc,jlc->ijkl"),
+            (axes_b, edges_b, edges_a, "jkc,ilc->ijkl"),
+        ):
+            gaps = np.abs(np.einsum("ijc,ikc->ijk" if shape[0] == "i" else "ijc,jkc->ijk", between, axes))
+            radii = np.abs(np.einsum("nkc,nlc->nkl", axes, own)).sum(axis=2)
+            gaps -= radii[:, None] if shape[0] == "i" else radii[None, :]
+            gaps -= np.abs(np.einsum(shape, axes, others)).sum(axis=3)
+            bounds = np.fmax(bounds, gaps.max(axis=2) * (1 - 1e-9) - slack)
+    return bounds
