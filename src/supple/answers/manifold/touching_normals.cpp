@@ -108,7 +108,7 @@ std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, const Ma
     for (const Vec3d& normal : b_.normals) add_if_apart(sign * normal);
     for (const Vec3d& normal : a_.normals) add_if_apart(-sign * normal);
   }
-  for (const Vec3d& edge : normals_.empty() ? a_.edges : std::vector<Vec3d>{}) {
+  for (const Vec3d& edge : std::span(a_.edges).first(normals_.empty() ? a_.edges.size() : 0)) {
     for (const Vec3d& other : b_.edges) {
       const Vec3d across = cross(edge, other);
       if (norm(across) < least_sine) continue;
