@@ -108,7 +108,7 @@ std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, const Ma
     for (const Vec3d& normal : b_.normals) add_if_apart(sign * normal);
     for (const Vec3d& normal : a_.normals) add_if_apart(-sign * normal);
   }
-  for (const Vec3d& edge : normals_.empty() ? a_.edges : std::vector<Vec3d>{}) {
+  for (const Vec3d& edge : std::span(a_.edges).first(normals_.empty() ? a_.edges.size() : 0)) {
     for (const Vec3d& other : b_.edges) {
       const Vec3d across = cross(edge, other);
       if (norm(across) < least_sine) continue;
@@ -143,14 +143,26 @@ std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, const Ma
 
 bool TouchingNormals::starts_inside(const ProximityPair& pair, const ManifoldObject& a,
                                     const ManifoldObject& b) {
-  if (!a.object->options.solid && !b.object->options.solid) return false;
-  rounding_ = 0;
-  list(pair, a, b);
-  const auto starts_in = [](const Around& around, const Vec3d& way) {
-    const auto looks_away = [&](const Vec3d& face) { return dot(face, way) < 0; };
-    return around.is_solid && !around.normals.empty() && std::ranges::all_of(around.normals, looks_away);
+  const auto starts_in = [](const ManifoldObject& object, const FeatureName& feature, const Vec3d& way) {
+    const SurfaceView& surface = object.surface;
+    const auto looks_away = [&](std::uint32_t id) { return dot(unit_normal(surface.corners(id)), way) < 0; };
+    if (feature.kind == FeatureKind::face) return looks_away(feature.first);
+    bool has_face = false;
+    for (const std::uint32_t id : surface.around->around(feature.first)) {
+      const Triangle& triangle = surface.triangle(id);
+      if (std::ranges::find(triangle, feature.last) == triangle.end()) continue;
+      if (!looks_away(id)) return false;
+      has_face = true;
+    }
+    return has_face;
   };
-  return starts_in(a_, -pair.normal) || starts_in(b_, pair.normal);
+  rounding_ = 0;
+  return (a.object->options.solid &&
+          starts_in(a, feature_of(a, pair.kind_a, pair.element_a, pair.barycentric_a, pair.point_a),
+                    -pair.normal)) ||
+         (b.object->options.solid &&
+          starts_in(b, feature_of(b, pair.kind_b, pair.element_b, pair.barycentric_b, pair.point_b),
+                    pair.normal));
 }
 
 }  // namespace supple
