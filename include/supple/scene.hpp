@@ -198,9 +198,9 @@ class Scene {
   /// touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then
   /// the first that would touch. Pairs of more than `SceneOptions::max_exact_bits` can make it shorter.
   ///
-  /// Ignores `ImpactOptions::max_time` and `skip_parting`. Takes about the time of one to three calls of
-  /// `detect` for the same step, whatever its length. Throws `Error` when an option or a limit is out of its
-  /// range.
+  /// Ignores `ImpactOptions::max_time` and `skip_parting`. A step that is many times longer than the objects
+  /// takes about the time of a short one, which is a few times that of `detect` for a short step. Throws
+  /// `Error` when an option or a limit is out of its range.
   SafeStep collision_free_step(const StepOptions& options = {}, const StepLimits& limits = {});
   /// A safe part of the step for each object, ascending, so that one pair does not stop all objects. Objects
   /// of one island move by the same part. After each island has moved by its part, or by less, nothing has

@@ -140,8 +140,8 @@ struct World {
   std::vector<float> floats = std::vector<float>(3 * positions.size(), 0.25f);
   std::vector<double> log;  // of complete calls
 
-  void detect(const DetectRequest& request = {}) {
-    const DetectResult& result = scene.detect(request);
+  void detect(const DetectRequest& request = {}) { log_result(scene.detect(request)); }
+  void log_result(const DetectResult& result) {
     const std::int64_t left = allow_allocations();  // those of the digest are not part of the life
     Digest digest;
     digest.add(result);
@@ -277,7 +277,64 @@ std::vector<Call> asking() {
         for (const ProximityPair& pair : world.scene.distances(10)) world.log.push_back(pair.distance);
       },
       [](World& world) { world.log.push_back(world.scene.any_contact(world.ids[0], world.ids[1])); },
+      [](World& world) { world.log_result(world.scene.search({.contacts = all_kinds})); },
+      [](World& world) {
+        world.log_result(world.scene.search({}, [](ObjectId a, ObjectId) { return a.index != 2; }));
+      },
+      [](World& world) {
+        const auto first = world.scene.earliest_impact();
+        world.log.push_back(first ? first->toi : -1);
+      },
+      [=](World& world) {
+        std::vector<std::optional<RayHit>> hits(rays.size());
+        world.scene.cast(rays, hits);
+        for (const auto& hit : hits) world.log.push_back(hit ? hit->t : -1);
+      },
+      [](World& world) {
+        const std::array<QuerySphere, 1> spheres{{{{0.5, 0, 0}, 0.4}}};
+        world.log.push_back(static_cast<double>(world.scene.overlaps(spheres).size()));
+      },
       [](World& world) { world.detect(); },
+  };
+}
+
+/// Touching boxes that part, so that steps decide the triangles around the points that they share.
+std::vector<Call> parting() {
+  const auto box = [](Vec3d at) {
+    TriangleMesh mesh = make_box({1, 1, 1}, 1);
+    for (Vec3d& p : mesh.positions) p = p + at;
+    return mesh;
+  };
+  const TriangleMesh above = box({0.25, 1, 0});
+  return {
+      [=](World& world) { world.ids[5] = world.scene.add(box({}), {}); },
+      [=](World& world) { world.ids[2] = world.scene.add(above, {}); },
+      [=](World& world) {
+        world.scene.set_motion(world.ids[2], above.positions, moved(above.positions, {0, 1, 0}));
+      },
+      [](World& world) { world.log.push_back(world.scene.max_step().step); },
+      [](World& world) { world.log.push_back(world.scene.collision_free_step().step); },
+      [](World& world) {
+        for (const ObjectStep& found : world.scene.collision_free_steps())
+          world.log.push_back(found.safe.step);
+      },
+      [](World& world) { world.detect({.contacts = all_kinds}); },
+  };
+}
+
+/// A filter that takes memory. What an observer throws leaves a call that is complete.
+std::vector<Call> filtering() {
+  return {
+      [](World& world) {
+        world.scene.set_pair_filter([](ObjectId a, ObjectId b) {
+          const std::vector<std::uint32_t> both{a.index, b.index};
+          return both[0] + both[1] != 4;
+        });
+      },
+      [](World& world) { world.detect(); },
+      [](World& world) { world.log_result(world.scene.search({.contacts = all_kinds})); },
+      [](World& world) { world.log.push_back(world.scene.collision_free_step().step); },
+      [](World& world) { world.scene.set_pair_filter({}); },
   };
 }
 
@@ -321,6 +378,17 @@ void expect_usable_scene(const SceneOptions& options, const std::vector<Call>& c
 
 TEST(SceneOutOfMemory, ACallThatFailedCanBeRepeated) {
   expect_usable_scene({.threads = 1}, joined({adding(), moving(), asking(), removing()}));
+}
+
+TEST(SceneOutOfMemory, WithTwoThreads) {
+  expect_usable_scene({.threads = 2}, joined({adding(), moving(), asking(), removing()}));
+}
+
+TEST(SceneOutOfMemory, WhereObjectsTouchAndAFilterIsCalled) {
+  for (const std::uint32_t threads : {1u, 2u}) {
+    SCOPED_TRACE(threads);
+    expect_usable_scene({.threads = threads}, joined({parting(), filtering(), adding(), filtering()}));
+  }
 }
 
 TEST(SceneOutOfMemory, WithEveryBroadPhase) {

@@ -122,7 +122,8 @@ TEST_P(ContinuousScenes, FindTheEarliestOfAll) {
                                           [](const auto& p, const auto& q) { return p.toi < q.toi; });
       ASSERT_NE(first, all.end());
       EXPECT_EQ(scene.earliest_impact(), *first) << seed;
-      EXPECT_EQ(scene.max_step().step, first->toi);
+      // What touches at the start may part.
+      if (first->toi > 0) EXPECT_EQ(scene.max_step().step, first->toi);
     }
   }
 }

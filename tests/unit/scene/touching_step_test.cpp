@@ -220,5 +220,53 @@ TEST(TouchingSteps, AgreeWithCrossingsJustAfterTheStart) {
   EXPECT_GT(crossing, 50);
 }
 
+/// Whether boxes with sides along the axes have a common inner point at a part of their ways, exactly: all
+/// numbers are multiples of 2^-20.
+bool overlap_at(const Vec3d& size_a, const Vec3d& way_a, const Vec3d& place_b, const Vec3d& size_b,
+                const Vec3d& way_b, double part) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double gap =
+        std::abs(place_b[axis] + part * (way_b[axis] - way_a[axis])) - (size_a[axis] + size_b[axis]) / 2;
+    if (gap >= 0) return false;
+  }
+  return true;
+}
+
+/// Random boxes that touch: flush, corner on edge, edge on edge, and so on. The step is 0 exactly where they
+/// overlap just after the start, and never longer than up to where they do.
+TEST(TouchingSteps, OfRandomBoxesEndWhereTheyOverlap) {
+  RandomNumbers random(17);
+  int parting = 0, against = 0;
+  for (int round = 0; round < 600; ++round) {
+    const auto quarters = [&](int low, int high) { return 0.25 * random.between(low, high); };
+    const auto vector = [&](int low, int high) {
+      return Vec3d{quarters(low, high), quarters(low, high), quarters(low, high)};
+    };
+    const Vec3d size_a = vector(1, 4), size_b = vector(1, 4);
+    Vec3d place{};
+    const auto touching = static_cast<int>(random.below(3));
+    for (int axis = 0; axis < 3; ++axis) {
+      const double reach = (size_a[axis] + size_b[axis]) / 2;
+      const bool touches = axis == touching || random.below(4) == 0;
+      place[axis] = touches ? (random.below(2) == 0 ? reach : -reach) : reach * 0.25 * random.between(-3, 3);
+    }
+    const Vec3d way_a = random.below(2) == 0 ? Vec3d{} : vector(-2, 2), way_b = vector(-2, 2);
+    const auto resolution = [&] { return 1 + random.below(2); };
+    const TriangleMesh a = make_box(size_a, resolution()), b = at(make_box(size_b, resolution()), place);
+    const Steps found = steps({moving(a, way_a), moving(b, way_b)}, 0, 0);
+    const bool crosses = overlap_at(size_a, way_a, place, size_b, way_b, 0x1p-10);
+    EXPECT_EQ(found.longest == 0, crosses) << round;
+    EXPECT_EQ(found.free == 0, crosses) << round;
+    EXPECT_EQ(found.of_object == 0, crosses) << round;
+    for (const double part : {0.125, 0.5, 1.0}) {
+      EXPECT_FALSE(overlap_at(size_a, way_a, place, size_b, way_b, part * found.longest)) << round;
+      EXPECT_FALSE(overlap_at(size_a, way_a, place, size_b, way_b, part * found.free)) << round;
+    }
+    (crosses ? against : parting) += 1;
+  }
+  EXPECT_GT(parting, 150);
+  EXPECT_GT(against, 100);
+}
+
 }  // namespace
 }  // namespace supple
