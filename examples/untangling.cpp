@@ -11,7 +11,7 @@ int main() {
   supple::TriangleMesh ball = supple::make_icosphere(12);
   for (supple::Vec3d& p : ball.positions) p = 0.5 * p + supple::Vec3d{0.013, 0.35, 0.017};
 
-  supple::Scene scene({.contacts = supple::ContactKinds::penetration});
+  supple::Scene scene({.contacts = supple::ContactKinds::penetration, .curves = true});
   const supple::ObjectId a = scene.add(cloth, {.name = "cloth"});
   scene.add(ball, {.name = "ball", .is_static = true, .solid = true});
 

@@ -41,6 +41,7 @@ constexpr OptionNeed needs[] = {
     {"max_time", has_continuous, "contacts", "continuous"},
     {"skip_parting", has_continuous, "contacts", "continuous"},
     {"continuous_listing", has_continuous, "contacts", "continuous"},
+    {"curves", has_penetration, "contacts", "penetration"},
     {"depths", has_penetration, "contacts", "penetration"},
     {"element_kinds", [](const SceneOptions& scene) { return has_continuous(scene) || has_proximity(scene); },
      "contacts", "continuous or proximity"},

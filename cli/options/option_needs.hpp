@@ -6,6 +6,11 @@
 
 namespace supple::cli {
 
+/// The options of the programs where nothing else is given: what touches is also described by curves.
+inline SceneOptions default_scene_options() {
+  return {.curves = true};
+}
+
 /// A condition under which an option of the scene has an effect. An option may have several.
 struct OptionNeed {
   const char* key;

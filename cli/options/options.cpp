@@ -36,9 +36,12 @@ namespace {
 
 /// The options of the detection that the input has: those of a recording or of a scene file.
 SimulationOptions options_of(const std::vector<std::string>& inputs) {
-  SimulationOptions options;
+  SimulationOptions options{.scene = default_scene_options()};
   if (inputs.empty()) return options;
-  if (is_recording(inputs.front())) options.scene = Recording(inputs.front()).header().scene;
+  if (is_recording(inputs.front())) {
+    options.scene = Recording(inputs.front()).header().scene;
+    options.scene.curves = true;
+  }
   if (is_scene_file(inputs.front())) options = read_scene_options(inputs.front());
   return options;
 }

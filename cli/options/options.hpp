@@ -10,6 +10,7 @@
 
 #include "inputs/reading.hpp"
 #include "options/json_content.hpp"
+#include "options/option_needs.hpp"
 #include "query/query_file.hpp"
 #include "session/overrides.hpp"
 #include "session/session.hpp"
@@ -39,7 +40,7 @@ struct MethodOptions {
   bool as_2007 = false;  ///< the method of the paper's program, which given options change
   std::optional<bool> fused_refit{};  ///< as given; after all options were read, what applies
   bool root_is_border = false;        ///< the root of the scene octree is given as the border of the scene
-  viewer::Overrides<SceneOptions> given_scene;
+  viewer::Overrides<SceneOptions> given_scene{default_scene_options()};
   viewer::Overrides<ObjectOptions> given_objects;  ///< of all objects
   bool parts = false;                              ///< each connected part is an object
 };

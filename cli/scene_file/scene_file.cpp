@@ -343,7 +343,7 @@ Input read_scene_file(const fs::path& path, const SceneOverrides& overrides) {
 
 SimulationOptions read_scene_options(const fs::path& path) {
   const toml::table file = parse_toml(read_toml(path), path);
-  SimulationOptions simulation;
+  SimulationOptions simulation{.scene = default_scene_options()};
   TomlReader reader(path, file, "scene file");
   if (const toml::table* scene = reader.table("scene")) read_scene(*scene, path, simulation);
   return simulation;
@@ -355,6 +355,7 @@ Input read_scene_text(std::string text, const fs::path& path, const SceneOverrid
   const toml::table file = parse_toml(input.scene_text, path);
   TomlReader reader(path, file, "scene file");
   ObjectDefaults defaults;
+  input.simulation.scene = default_scene_options();
   if (const toml::table* scene = reader.table("scene")) defaults = read_scene(*scene, path, input.simulation);
   const std::vector<const toml::table*> objects = reader.tables("object", "[[object]]");
   reader.finish();

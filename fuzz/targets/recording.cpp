@@ -37,6 +37,7 @@ void record(std::size_t choice, const std::filesystem::path& path) {
       ContactKinds::penetration};
   RecordingHeader header;
   header.scene.contacts = kinds[choice];
+  header.scene.curves = true;
   header.scene.threads = 1;
   header.scene.comparison.colliding_vertices = choice == 0;
   header.scene_file = "[scene]";

@@ -273,6 +273,7 @@ class Life {
     std::uint32_t kinds = bytes_.below(16);
     if (!coordinate_.is_quick()) kinds &= ~2u;  // any bits can make exact impacts slow
     request.contacts = static_cast<ContactKinds>(kinds);
+    request.curves = contains(*request.contacts, ContactKinds::penetration);
     request.proximity_listing = static_cast<ProximityListing>(bytes_.below(2));
     request.element_kinds = static_cast<ElementKinds>(bytes_.below(3));
     request.continuous_listing = static_cast<ContinuousListing>(bytes_.below(2));

@@ -314,6 +314,11 @@ struct Description<SceneOptions> {
         .member = &Options::manifolds,
         .doc = "Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at "
                "most four points, with ids that last from frame to frame"});
+    visitor(Field<Options, bool>{
+        .name = "curves",
+        .member = &Options::curves,
+        .doc = "Penetration: also list the curves in which surfaces intersect, with what they enclose, a "
+               "normal and a depth"});
     visitor(Field<Options, PenetrationDepths>{
         .name = "depths",
         .member = &Options::depths,

@@ -63,8 +63,9 @@ enum class ContactKinds : std::uint8_t {
   /// Every two features, or elements, within the margins of their objects at the current positions; see
   /// `ProximityPair`.
   proximity = 4,
-  /// What objects that intersect do: vertices inside solids with their depths, contained parts, and curves;
-  /// see `Penetration`, `ContainedPart` and `IntersectionCurve`. It includes `intersection`.
+  /// What objects that intersect do: vertices inside solids with their depths, and contained parts; with
+  /// `SceneOptions::curves` also curves. See `Penetration`, `ContainedPart` and `IntersectionCurve`. It
+  /// includes `intersection`.
   penetration = 8,
 };
 constexpr ContactKinds operator|(ContactKinds p, ContactKinds q) {
@@ -180,6 +181,11 @@ struct SceneOptions {
   /// with ids that last from step to step; see `Manifold`. A request with this option and without these kinds
   /// is an error.
   bool manifolds = false;
+  /// For penetration: also the curves in which surfaces intersect, each with what it encloses, a normal and a
+  /// depth; see `IntersectionCurve`. Takes time in proportion to the contacts and the vertices behind them,
+  /// so leave it out where depths of vertices suffice. Manifolds of penetration are made from curves:
+  /// `manifolds` includes them. A request with this option and without penetration is an error.
+  bool curves = false;
   PenetrationDepths depths = PenetrationDepths::all;
   /// Bounds the time of exact arithmetic on hostile coordinates; docs/conventions.md has a table. The bits of
   /// coordinates reach from the highest bit of the largest to the last bit of the finest. Elements of more
@@ -213,6 +219,7 @@ struct DetectRequest {
   std::optional<ElementKinds> element_kinds{};
   std::optional<ContinuousListing> continuous_listing{};
   std::optional<bool> manifolds{};
+  std::optional<bool> curves{};
   std::optional<PenetrationDepths> depths{};
   /// The largest number of contacts of each kind in the result: the first ones in canonical order, for any
   /// number of threads. `DetectResult::truncated` says that there are more. The limit bounds the result and

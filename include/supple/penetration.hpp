@@ -70,32 +70,38 @@ inline constexpr std::array words<CurveKind>{"closed", "open", "branched"};
 /// ascending contacts and no points.
 ///
 /// On each of two surfaces, a curve encloses the vertices that it cuts off: those on the smaller of the two
-/// sides, by the number of vertices, and of equal sides the one that is behind. It encloses nothing where it
-/// does not divide the connected part of the surface, and where a vertex makes the sides ambiguous. On a
-/// curve of an object with itself, side a has the smaller triangle of the curve's smallest contact. See
+/// sides, by the number of vertices, and of equal sides the one inside the other object. It encloses nothing
+/// where it does not divide the connected part of the surface, and where a vertex makes the sides ambiguous.
+/// On a curve of an object with itself, side a has the smaller triangle of the curve's smallest contact. See
 /// Baraff, Witkin and Kass, Untangling Cloth, 2003.
 ///
-/// `normal` and `depth` say how a leaves b. They concern two parts: on each surface, the triangles of the
-/// curve's contacts and those around the vertices behind it. These are the vertices on the side of the curve
-/// that is lower along the direction of its area for a, and higher for b. They are the enclosed vertices
-/// where the surface is about level there, and where this side is the larger one and has more vertices than
-/// 16 for each contact of the curve and than four times the vertices of the surface divided by the curves of
-/// the two objects: so the time is in proportion to contacts, vertices and what is enclosed. The depth along
-/// a direction is the longest way, in this direction, from a point of part a to a point of part b straight
-/// ahead. So this move brings part a past part b, and a shorter one does not. It is at most the smallest move
-/// in this direction after which two convex bodies do not overlap. Triangles parallel to the direction have
-/// nothing ahead, and triangles that touch only beside each other are not ahead of each other: sides that
-/// slide past each other do not count. A direction in which no point of a has one of b ahead counts only
-/// where all are such. Where a body fits into another one so that the curve goes only through its own
-/// vertices, no vertex is behind the curve, and the depth is that of the touching faces: 0.
+/// `normal` and `depth` say how a leaves b: after a moves by `depth` along `normal`, no vertex of the contact
+/// is inside the other object, and two convex objects have no common inside. So the depth is at least that of
+/// the deepest vertex of the contact, and at most the overlap of two convex objects along the normal.
 ///
-/// `normal` is the direction with the least depth of these: the outward normals of faces of b, and the
-/// reverse of those of a, on which at least half of the curve lies; and the direction of the area, for other
-/// than closed curves that of their segments. Where there are none, it is the mean direction of the contacts'
-/// normals by length. Contacts in which one triangle is nowhere behind the other only touch; their faces
-/// count where the curve has no other contacts. Where several directions have the same depth (within 2^-36),
-/// it is their mean, so that a symmetric curve has a symmetric normal; only where they cancel out, it is the
-/// first of them. To exchange a and b reverses the normal.
+/// The contact is what is behind the curve on each surface: the triangles of the curve's contacts, and those
+/// around the vertices that are behind the other surface and that edges without contacts connect to the
+/// curve. Exact signs decide what is behind, so vertices that are on the other surface hide nothing. Where a
+/// part goes through the other object, so that it is in front again beyond another curve, its far end belongs
+/// to the contact, too, unless it has many more vertices than the curve has contacts. Where the other object
+/// is not solid, or the same one, the contact has at most 64 + 16 n + n² / 4 vertices of a side for n
+/// contacts, those nearest to the curve by edges. O(n log n) for n triangles of the contact, and the rays.
+///
+/// The depth along a direction is the longest way, in this direction, from a point of a to a point of b
+/// straight ahead; rays from vertices inside add the triangles through which these leave. Triangles parallel
+/// to the direction have nothing ahead, and triangles that touch only beside each other are not ahead of each
+/// other: sides that slide past each other do not count. A direction in which nothing is ahead counts only
+/// where all are such; the depth is then 0, as for surfaces that only touch.
+///
+/// `normal` is the direction with the least depth of these: the outward normals of the faces of b, and the
+/// reverse of those of a, on which the curve lies (of more than twelve normals, those of at least an eighth
+/// of the curve); the direction of the curve's area, for other than closed curves that of their segments; and
+/// the shortest moves out of two or three of these faces at once, where no face alone leads out of a corner
+/// as soon. Where there are none, it is the mean direction of the contacts' normals by length. Contacts in
+/// which one triangle is nowhere behind the other only touch; their faces count where the curve has no other
+/// contacts. Of several directions with the same depth (within 2^-36), it is the one with the largest x, then
+/// y, then z component, by magnitude. So a small move changes the depth by little, but can change the normal.
+/// To exchange a and b reverses the normal, unless opposite directions have the same depth.
 struct IntersectionCurve {
   ObjectId a, b;  ///< equal for a curve of an object with itself
   CurveKind kind = CurveKind::closed;

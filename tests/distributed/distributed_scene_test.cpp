@@ -45,8 +45,8 @@ void live(std::uint64_t seed, ContactKinds contacts, const DistributedOptions& o
     if (what == 2) lives.change_ranks();
     if (what == 3) lives.change_settings(!is_deep);
     lives.move_objects(lives.random.below(6) == 0);
-    const DetectResult& expected = lives.plain.detect({.contacts = contacts});
-    const DetectResult& found = lives.distributed.detect({.contacts = contacts});
+    const DetectResult& expected = lives.plain.detect({.contacts = contacts, .curves = is_deep});
+    const DetectResult& found = lives.distributed.detect({.contacts = contacts, .curves = is_deep});
     for (const auto count : {&StepStats::object_pairs, &StepStats::contacts, &StepStats::proximity_pairs,
                              &StepStats::penetrations, &StepStats::curves})
       EXPECT_EQ(found.stats.*count, expected.stats.*count);

@@ -165,7 +165,7 @@ std::vector<Call> adding() {
           add(2, crumpled_sheet(4, 4, 0.1, 3), {.self_collision = true, .margin = 0.02}),
           add(3, ball({0.1, 5, 0}), {.is_static = true}),
           [](World& world) { world.detect(); },
-          [](World& world) { world.detect({.contacts = all_kinds}); }};
+          [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); }};
 }
 
 std::vector<Call> moving() {
@@ -176,7 +176,7 @@ std::vector<Call> moving() {
       [](World& world) {
         world.scene.translate(world.ids[1], {0.1, 4.3, 0});
       },
-      [](World& world) { world.detect({.contacts = all_kinds}); },
+      [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); },
       [](World& world) {
         world.scene.set_transform(world.ids[1], {{0, 1, 0, -1, 0, 0, 0, 0, 1}, {1, 0, 0}});
       },
@@ -184,7 +184,7 @@ std::vector<Call> moving() {
       [](World& world) {
         world.scene.set_motion(world.ids[0], world.positions, moved(world.positions, {1.5, 0, 0}));
       },
-      [](World& world) { world.detect({.contacts = all_kinds}); },
+      [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); },
       [](World& world) { world.log.push_back(world.scene.max_step().step); },
       [](World& world) { world.log.push_back(world.scene.collision_free_step().step); },
       [](World& world) {
@@ -192,7 +192,7 @@ std::vector<Call> moving() {
           world.log.push_back(found.safe.step);
       },
       [](World& world) { world.scene.set_positions(world.ids[0], PositionsView(world.floats)); },
-      [](World& world) { world.detect({.contacts = all_kinds}); },
+      [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); },
       [](World& world) { world.scene.share_positions(world.ids[0], world.positions); },
       [](World& world) { world.detect(); },
       [](World& world) {
@@ -206,7 +206,7 @@ std::vector<Call> moving() {
         const std::array<Vec3d, 1> to{{{1, 1, 1}}};
         world.scene.set_vertices(world.ids[0], vertices, std::span<const Vec3d>(to));
       },
-      [](World& world) { world.detect({.contacts = all_kinds}); },
+      [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); },
       [](World& world) {
         world.scene.translate(world.ids[1], {0, 1e31, 0});
       },
@@ -221,7 +221,7 @@ std::vector<Call> moving() {
 std::vector<Call> removing() {
   return {
       [](World& world) { world.scene.remove(world.ids[1]); },
-      [](World& world) { world.detect({.contacts = all_kinds}); },
+      [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); },
       [](World& world) {
         world.ids[1] = world.scene.add(ball({0.5, 0, 0}), {.solid = true});
       },
@@ -237,7 +237,7 @@ std::vector<Call> removing() {
       },
       [](World& world) { world.detect(); },
       [](World& world) { world.scene.set_vertex_groups(world.ids[4], {}, {}); },
-      [](World& world) { world.detect({.contacts = all_kinds}); },
+      [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); },
   };
 }
 

@@ -33,6 +33,7 @@ class SeparatingMove {
     for (const auto& [piece, own] : {std::pair(&a, &edges[0]), std::pair(&b, &edges[1])}) {
       for (const Triangle& facet : piece->facets) {
         add(piece->normal(facet), a, b);
+        add(minus({}, piece->normal(facet)), a, b);
         for (std::size_t i = 0; i < 3; ++i) {
           const Point edge = minus(piece->points[facet[(i + 1) % 3]], piece->points[facet[i]]);
           own->insert(std::max(edge, minus({}, edge)));
@@ -114,7 +115,7 @@ class PairChecker {
 
   /// The first property that does not hold, in words; empty when all do.
   std::string fault() {
-    Scene scene({.contacts = ContactKinds::penetration, .threads = 1});
+    Scene scene({.contacts = ContactKinds::penetration, .curves = true, .threads = 1});
     scene.add(pair_.a.mesh(), {.solid = true});
     scene.add(pair_.b.mesh(), {.solid = true});
     const DetectResult& result = scene.detect();
@@ -270,7 +271,7 @@ class PairChecker {
   /// Exchanged bodies have the same depths and reversed normals. A body that moves by 2^-20 changes its depth
   /// by about as much.
   std::string fault_of_other_scenes(const DetectResult& result) const {
-    Scene swapped({.contacts = ContactKinds::penetration, .threads = 1});
+    Scene swapped({.contacts = ContactKinds::penetration, .curves = true, .threads = 1});
     swapped.add(pair_.b.mesh(), {.solid = true});
     swapped.add(pair_.a.mesh(), {.solid = true});
     const double depth = largest_depth(result), other = largest_depth(swapped.detect());
@@ -278,7 +279,7 @@ class PairChecker {
       return "exchanged, the depth is " + std::to_string(other) + " instead of " + std::to_string(depth);
     constexpr double step = 0x1p-20;
     for (const Vec3d& offset : {Vec3d{step, 0, 0}, Vec3d{0, -step, 0}, Vec3d{step, step, -step}}) {
-      Scene moved({.contacts = ContactKinds::penetration, .threads = 1});
+      Scene moved({.contacts = ContactKinds::penetration, .curves = true, .threads = 1});
       moved.add(pair_.a.mesh(offset), {.solid = true});
       moved.add(pair_.b.mesh(), {.solid = true});
       const DetectResult& found = moved.detect();

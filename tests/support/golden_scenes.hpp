@@ -184,7 +184,7 @@ inline std::uint64_t penetration_hash_of_boxes(std::uint32_t threads) {
   std::uint64_t hash = empty_hash;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     RandomNumbers random(seed);
-    Scene scene({.contacts = ContactKinds::penetration, .threads = threads});
+    Scene scene({.contacts = ContactKinds::penetration, .curves = true, .threads = threads});
     for (int i = 0; i < 4; ++i) {
       TriangleMesh box{"box",
                        {},

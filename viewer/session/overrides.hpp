@@ -12,6 +12,8 @@ namespace supple::viewer {
 template <Described Options>
 class Overrides {
  public:
+  explicit Overrides(const Options& defaults = {}) : values_(defaults) {}
+
   /// Calls `read(field, value)` for each option; it returns true when it wrote the value.
   template <class Read>
   void read(Read read) {
@@ -51,7 +53,7 @@ class Overrides {
   static_assert(count_leaves<Options>() <= 64);
   static constexpr std::uint64_t bit(std::size_t place) { return std::uint64_t{1} << place; }
 
-  Options values_{};
+  Options values_;
   std::uint64_t given_ = 0;
 };
 

@@ -166,6 +166,7 @@ SceneView arranged(const SceneView& show, const Settings& settings) {
   // `PaperVertices` computes these, and only on request.
   simulation.scene.comparison.colliding_vertices = false;
   simulation.scene.manifolds = false;
+  simulation.scene.curves = true;
   simulation.fused_refit = simulation.fused_refit && simulation.scene.comparison.lazy_refit;
   simulation.time_step = settings.restart.time_step.value_or(simulation.time_step);
   simulation.seed = settings.restart.seed.value_or(simulation.seed);

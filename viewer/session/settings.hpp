@@ -59,7 +59,7 @@ constexpr bool is_setting(const Field<Struct, Value>& field) {
     if (std::string_view(field.name) == "colliding_vertices") return false;
   }
   if constexpr (std::is_same_v<Struct, SceneOptions>) {
-    if (std::string_view(field.name) == "manifolds") return false;
+    if (std::string_view(field.name) == "manifolds" || std::string_view(field.name) == "curves") return false;
   }
   if constexpr (std::is_same_v<Value, ProximityListing>) return false;
   return !field.is_of_machine;

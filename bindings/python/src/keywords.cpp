@@ -40,7 +40,7 @@ DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const c
           (std::string(where) + ": there is no option '" + keyword +
            "'; the options are contacts, those of continuous contacts (supple.options"
            "('ImpactOptions')), proximity_listing, element_kinds, continuous_listing, manifolds, "
-           "depths and max_contacts")
+           "curves, depths and max_contacts")
               .c_str());
     }
     if (keyword == "contacts")
@@ -53,6 +53,8 @@ DetectRequest request_of(const nb::dict& keywords, SceneOptions options, const c
       request.continuous_listing = options.continuous_listing;
     else if (keyword == "manifolds")
       request.manifolds = options.manifolds;
+    else if (keyword == "curves")
+      request.curves = options.curves;
     else if (keyword == "depths")
       request.depths = options.depths;
     else if (ImpactOptions impact; keyword == "impact" || set_option(impact, keyword, value, where))

@@ -190,7 +190,7 @@ class _CheckFrames:
 
     def __call__(self, frames: Frames) -> Iterator[_Checked]:
         names, triangles, first, positions = frames.open()
-        scene = Scene(contacts="penetration", threads=self.threads)
+        scene = Scene(contacts="penetration", curves=True, threads=self.threads)
         notes: list[str] = []
         objects: list[tuple[int, Any, Any]] = []  # of which mesh, its object, its vertices
         for i, (name, faces, xyz) in enumerate(zip(names, triangles, first)):

@@ -150,7 +150,7 @@ groups, which run without it. It must not call the scene. What it raises ends th
 
         Options of the scene can have other values for this call: `contacts`, those of continuous contacts
         (`supple.options("ImpactOptions")`), `proximity_listing`, `element_kinds`, `continuous_listing`,
-        `manifolds` and `depths`. `max_contacts` is the largest number of contacts of each kind: the first
+        `manifolds`, `curves` and `depths`. `max_contacts` is the largest number of contacts of each kind: the first
         ones in canonical order. The last result stays valid as long as you hold it or one of its lists.
         """
         # Nothing of the last result is kept unless somebody holds it.

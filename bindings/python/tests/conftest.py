@@ -50,7 +50,7 @@ def rng():
 
 def two_spheres(sphere, apart=1.5, **options):
     """Two spheres that intersect, in a scene of all kinds of contacts but continuous ones."""
-    scene = supple.Scene(contacts={"intersection", "proximity", "penetration"}, **options)
+    scene = supple.Scene(contacts={"intersection", "proximity", "penetration"}, curves=True, **options)
     a = scene.add(sphere, name="a", margin=0.05, solid=True)
     b = scene.add(
         np.asarray(sphere.positions) + [apart, 0, 0], sphere.triangles, name="b", margin=0.05, solid=True

@@ -34,7 +34,7 @@ motion = { kind = "mass_spring", random_speed = 0.6 }
 
 
 def test_recordings(tmp_path):
-    simulation = supple.Simulation(contacts={"intersection", "penetration"}, seed=1)
+    simulation = supple.Simulation(contacts={"intersection", "penetration"}, curves=True, seed=1)
     box = simulation.add(supple.make_box(), rigid={"velocity": (1, 0, 0)}, name="box", solid=True)
     moved = simulation.add(
         supple.make_icosphere(3), motion=lambda seconds, x: x + [0, 0.01, 0], name="ball", solid=True

@@ -90,7 +90,8 @@ bool Detection::find_penetrations(const PassInput& input, StepStats& stats) {
   found.groups = intersection_pass_.groups();
   found.contacts = intersection_pass_.contacts();
   found.contact_points = intersection_pass_.contact_points();
-  if (!penetration_pass_.run(input, penetrated_objects_, found, question_.depths)) return false;
+  if (!penetration_pass_.run(input, penetrated_objects_, found, {question_.depths, question_.curves}))
+    return false;
   stats.penetrations = penetration_pass_.penetrations().size();
   stats.curves = penetration_pass_.curves().curves.size();
   return true;

@@ -7,7 +7,7 @@ namespace supple {
 
 Question question_of(const DetectRequest& request, const SceneOptions& options) {
   if (request.impact) check(*request.impact, "DetectRequest::impact");
-  const Question question{
+  Question question{
       .contacts = with_included(request.contacts.value_or(options.contacts)),
       .impact = {request.impact.value_or(options.impact),
                  request.element_kinds.value_or(options.element_kinds),
@@ -17,9 +17,13 @@ Question question_of(const DetectRequest& request, const SceneOptions& options) 
       .colliding_vertices = options.comparison.colliding_vertices,
       .lazy_refit = options.comparison.lazy_refit,
       .manifolds = request.manifolds.value_or(options.manifolds),
+      .curves = request.curves.value_or(options.curves),
       .depths = request.depths.value_or(options.depths)};
   if (request.manifolds.value_or(false) && !question.has_penetration() && !question.has_proximity())
     fail("detect: manifolds are made from penetration or proximity; request one of these contacts");
+  if (request.curves.value_or(false) && !question.has_penetration())
+    fail("detect: curves belong to penetration; request it, too");
+  question.curves = (question.curves || question.manifolds) && question.has_penetration();
   if (question.has_penetration() && request.max_contacts != DetectRequest{}.max_contacts)
     fail("detect: penetration needs all intersections; request it without max_contacts");
   return question;

@@ -19,6 +19,7 @@ struct Question {
   bool colliding_vertices = false;
   bool lazy_refit = false;
   bool manifolds = false;
+  bool curves = false;
   PenetrationDepths depths = PenetrationDepths::all;
   std::optional<StepOptions> safe_step{};  ///< continuous contacts: for a safe step
   /// Only these pairs of objects of those that the world lets through; all when it is empty. For an object

@@ -114,6 +114,7 @@ inline Contents simulate_solids(std::uint64_t frames) {
   folding.self_collision = true;
   SceneOptions scene;
   scene.contacts = ContactKinds::penetration;
+  scene.curves = true;
   scene.threads = 1;
   const auto offset_of = [](std::uint64_t frame, std::size_t object, std::size_t vertex) {
     const double way = static_cast<double>(frame) / 4;

@@ -143,6 +143,7 @@ TEST(Recording, RoundTripOfPenetrationOfRealMeshes) {
   for (Vec3d& p : bunny.positions) p = 8 * p - Vec3d{0, 0.8, 0};
   SceneOptions scene;
   scene.contacts = ContactKinds::penetration;
+  scene.curves = true;
   const auto offset_of = [](std::uint64_t frame, std::size_t object, std::size_t) {
     const double way = static_cast<double>(frame) * 0.15;
     return object == 1 ? Vec3d{way, 0.1, 0.2} : object == 2 ? Vec3d{0, 0.1, way} : Vec3d{};

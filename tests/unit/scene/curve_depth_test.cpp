@@ -21,7 +21,7 @@ namespace {
 using Rational = boost::multiprecision::cpp_rational;
 using RationalVector = std::array<Rational, 3>;
 
-constexpr SceneOptions penetration{.contacts = ContactKinds::penetration};
+constexpr SceneOptions penetration{.contacts = ContactKinds::penetration, .curves = true};
 
 RationalVector exact(const Vec3d& v) {
   return {Rational(v.x), Rational(v.y), Rational(v.z)};
@@ -123,13 +123,12 @@ TEST(CurveDepth, OfABoxInACorner) {
   ASSERT_EQ(curves.size(), 1u);
   EXPECT_EQ(curves[0].normal, (Vec3d{-1, 0, 0}));
   EXPECT_EQ(curves[0].depth, 0.125);
-  // Three equal ways out: the normal is that of the corner.
+  // Three equal ways out: one of them, which is no longer than in a corner that is not quite symmetric.
   const Box c{{1.875, 1.875, -1.875}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
   const auto equal = curves_of(a.mesh(), c.mesh());
   ASSERT_EQ(equal.size(), 1u);
-  const double part = 1 / std::sqrt(3.0);
-  expect_near(equal[0].normal, {-part, -part, part}, 1e-15);
-  expect_separation(a, c, equal[0]);
+  EXPECT_EQ(equal[0].normal, (Vec3d{-1, 0, 0}));
+  EXPECT_EQ(equal[0].depth, 0.125);
 }
 
 TEST(CurveDepth, IsZeroWhereBoxesOnlyTouch) {
@@ -143,8 +142,8 @@ TEST(CurveDepth, IsZeroWhereBoxesOnlyTouch) {
   }
 }
 
-/// Along the normal of the plate, the faces that it pierces have nothing ahead.
-TEST(CurveDepth, OfAPlateThroughABoxIsAlongThePlate) {
+/// The faces that the plate pierces have nothing ahead along its normal, but its edges inside the box have.
+TEST(CurveDepth, OfAPlateThroughABoxIsAcrossThePlate) {
   const Box box{{0.5, 0.5, 0.5}, {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}}};
   for (const double thickness : {1e-3, 1e-5, 1e-6, 1e-7, 1e-9}) {
     SCOPED_TRACE(thickness);
@@ -152,8 +151,8 @@ TEST(CurveDepth, OfAPlateThroughABoxIsAlongThePlate) {
     const auto curves = curves_of(box.mesh(), plate.mesh());
     ASSERT_EQ(curves.size(), 2u);
     for (const IntersectionCurve& curve : curves) {
-      EXPECT_NEAR(std::fabs(curve.normal.x), 1, 1e-12);
-      EXPECT_NEAR(curve.depth, 1.5, 1e-6);
+      EXPECT_NEAR(std::fabs(curve.normal.z), 1, 1e-12);
+      EXPECT_NEAR(curve.depth, 0.5 + thickness / 2, 1e-9);
     }
   }
 }

@@ -22,7 +22,7 @@
 namespace supple {
 namespace {
 
-constexpr SceneOptions penetration{.contacts = ContactKinds::penetration};
+constexpr SceneOptions penetration{.contacts = ContactKinds::penetration, .curves = true};
 
 TriangleMesh moved_mesh(TriangleMesh mesh, Vec3d offset, double scale = 1) {
   for (Vec3d& p : mesh.positions) p = p * scale + offset;

@@ -23,7 +23,7 @@ using PenetrationTruth = ProximityTruthTest;
 TEST_F(PenetrationTruth, VerticesInsideAndTheirDepths) {
   for (const json& expected : truth["depth"]) {
     SCOPED_TRACE(expected["name"].get<std::string>());
-    Scene scene({.contacts = ContactKinds::penetration});
+    Scene scene({.contacts = ContactKinds::penetration, .curves = true});
     scene.add(mesh_of(expected, "a", "ta"));
     scene.add(mesh_of(expected, "b", "tb"), {.solid = true});
     const DetectResult& result = scene.detect();
@@ -58,7 +58,7 @@ TEST_F(PenetrationTruth, VerticesInsideAndTheirDepths) {
 TEST_F(PenetrationTruth, Curves) {
   for (const json& expected : truth["contours"]) {
     SCOPED_TRACE(expected["name"].get<std::string>());
-    Scene scene({.contacts = ContactKinds::penetration});
+    Scene scene({.contacts = ContactKinds::penetration, .curves = true});
     scene.add(mesh_of(expected, "a", "ta"));
     scene.add(mesh_of(expected, "b", "tb"));
     const DetectResult& result = scene.detect();

@@ -259,6 +259,7 @@ class CollisionManager:
         wanted = {frozenset((a.added.index, b.added.index)) for a, b in overlapping}
         found = self._scene.search(
             contacts="penetration",
+            curves=True,
             depths="deepest",
             only=lambda a, b: frozenset((a.index, b.index)) in wanted,
         )

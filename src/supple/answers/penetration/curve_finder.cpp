@@ -43,6 +43,7 @@ void CurveFinder::find(const CurveInput& input, CurveLists& lists) {
   points_ = input.result->contact_points.subspan(
       contacts_[0].first_point, last.first_point + last.point_count - contacts_[0].first_point);
   link_contacts();
+  link_regions();
   face_normals_.clear();
   for (const Contact& of_pair : contacts_)
     face_normals_.push_back({unit_normal(input_.a.corners(of_pair.triangle_a)),
@@ -186,7 +187,10 @@ void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& 
   }
   curve.point_count = size_of(lists.points) - curve.first_point;
   measure(members, curve);
-  for (auto& behind : behind_) behind.clear();
+  // In proportion to the contacts, where the other surface is not known to bound the region.
+  const std::size_t n = members.size(), many = 64 + 16 * n + n * n / 4, all = ~std::size_t{0};
+  regions_[0].grow(curve_of_[members.front()], input_.b_is_solid ? all : many);
+  regions_[1].grow(curve_of_[members.front()], input_.a_is_solid ? all : many);
   curve.enclosed_count_a = static_cast<std::uint32_t>(enclose(members, false, lists));
   curve.enclosed_count_b = static_cast<std::uint32_t>(enclose(members, true, lists));
   find_way_out(members, curve);
@@ -253,14 +257,17 @@ bool CurveFinder::only_touches(std::uint32_t i) const {
   return is_outside(a, b) || is_outside(b, a);
 }
 
-/// Lists the normals of faces on which at least half of the curve lies: those of b, and the reverse of those
-/// of a. Contacts that only touch count where there are no others.
+/// Lists the normals of the faces on which the curve lies: those of b, and the reverse of those of a.
+/// Contacts that only touch count where there are no others. Of many normals, those on an eighth of the
+/// curve.
 void CurveFinder::list_face_normals(std::span<const std::uint32_t> members) {
+  constexpr std::size_t few = 12;
   double whole = 0;
-  const auto add = [&](const Vec3d& n, double length) {
+  const auto add = [&](const Vec3d& n, double length, std::uint32_t triangle, std::uint8_t side) {
     const auto rounded = [](double x) { return std::floor(x * 0x1p30 + 0.5); };
     if (n != Vec3d{})
-      directions_.push_back({{rounded(n.x), rounded(n.y), rounded(n.z)}, {n.x, n.y, n.z}, length});
+      directions_.push_back(
+          {{rounded(n.x), rounded(n.y), rounded(n.z)}, side, {n.x, n.y, n.z}, triangle, length});
   };
   for (const bool counts_touching : {false, true}) {
     directions_.clear();
@@ -268,20 +275,28 @@ void CurveFinder::list_face_normals(std::span<const std::uint32_t> members) {
       const double length = length_of(i);
       if (length == 0 || (!counts_touching && only_touches(i))) continue;
       whole += length;
-      const auto& [n_a, n_b] = face_normals_[i];
-      add(is_turned(i) ? n_a : n_b, length);
-      add(Vec3d{} - (is_turned(i) ? n_b : n_a), length);
+      for (std::uint8_t side = 0; side < 2; ++side) {
+        const Vec3d& outward = face_normals_[i][is_turned(i) ? 1 - side : side];
+        add(side == 0 ? Vec3d{} - outward : outward, length, triangle_of(i, side), side);
+      }
     }
     if (whole > 0) break;
   }
   std::sort(directions_.begin(), directions_.end());
-  for (std::size_t first = 0, next = 0; first < directions_.size(); first = next) {
-    double length = 0;
-    for (; next < directions_.size() && directions_[next].rounded == directions_[first].rounded; ++next)
-      length += directions_[next].length;
-    const auto& [x, y, z] = directions_[first].normal;
-    if (length >= (0.5 - 0x1p-20) * whole) normals_.push_back({x, y, z});
+  std::size_t count = 0;
+  for (const Direction& direction : directions_) {
+    Direction* const last = count > 0 ? &directions_[count - 1] : nullptr;
+    if (last != nullptr && last->rounded == direction.rounded && last->side == direction.side)
+      last->length += direction.length;
+    else
+      directions_[count++] = direction;
   }
+  directions_.resize(count);
+  if (count > few)
+    std::erase_if(directions_, [&](const Direction& direction) { return direction.length < whole / 8; });
+  // The faces with most of the curve are most likely the way out.
+  std::stable_sort(directions_.begin(), directions_.end(),
+                   [](const Direction& p, const Direction& q) { return p.length > q.length; });
 }
 
 /// The direction of the area that segments surround, each in the direction n_b x n_a, in any order; zero when
@@ -301,27 +316,21 @@ Vec3d CurveFinder::direction_of_segments(std::span<const std::uint32_t> members)
   return norm(area) > 0x1p-20 * length * length ? unit_or_zero(area) : Vec3d{};
 }
 
-/// Lists the directions of which `find_way_out` chooses one.
-void CurveFinder::list_normals(std::span<const std::uint32_t> members) {
-  normals_.clear();
-  list_face_normals(members);
-  const auto is_near = [&](const Vec3d& n) { return squared_norm(n - of_area_) < 0x1p-34; };
-  if (of_area_ != Vec3d{} && std::none_of(normals_.begin(), normals_.end(), is_near))
-    normals_.push_back(of_area_);
-  if (!normals_.empty()) return;
+/// The normal of a curve whose faces and area have no direction.
+Vec3d CurveFinder::mean_normal(std::span<const std::uint32_t> members) const {
   Vec3d by_length, sum;
+  double length = 0;
   for (const std::uint32_t i : members) {
     const Vec3d normal = is_turned(i) ? Vec3d{} - contact(i).normal : contact(i).normal;
     by_length = by_length + length_of(i) * normal;
     sum = sum + normal;
+    length += length_of(i);
   }
-  normals_ = {contact(members.front()).normal};
   // Sums of which rounding is a large part have no direction.
   constexpr double least = 0x1p-30;
-  double length = 0;
-  for (const std::uint32_t i : members) length += length_of(i);
-  if (norm(sum) > least * static_cast<double>(members.size())) normals_.front() = unit_or_zero(sum);
-  if (norm(by_length) > least * length) normals_.front() = unit_or_zero(by_length);
+  if (norm(by_length) > least * length) return unit_or_zero(by_length);
+  if (norm(sum) > least * static_cast<double>(members.size())) return unit_or_zero(sum);
+  return contact(members.front()).normal;
 }
 
 /// Appends the vertices that the curve encloses on one side and returns their number.
@@ -343,82 +352,89 @@ std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool si
     add_triangle(i, side_b != is_turned(i));
     if (is_one_sided) add_triangle(i, !is_turned(i));
   }
-  // All curves together flood as many vertices as there are contacts and vertices, about.
-  const std::size_t curves = first_member_.size() - 1;
-  const std::size_t most_behind = std::max(16 * members.size(), 4 * surface.around->vertex_count() / curves);
-  const Vec3d towards_behind = side_b ? of_area_ : Vec3d{} - of_area_;
+  const std::span<const std::uint32_t> behind = regions_[side_b ? 1 : 0].inside();
   const std::span<const std::uint32_t> enclosed =
-      side_.enclose(surface, {towards_behind, middle_, scale_}, most_behind);
-  behind_[side_b ? 1 : 0].assign(side_.behind().begin(), side_.behind().end());
+      side_.enclose(surface, behind.empty() ? CurveSide::none : behind.front());
   const auto first = static_cast<std::ptrdiff_t>(lists.enclosed.size());
   lists.enclosed.insert(lists.enclosed.end(), enclosed.begin(), enclosed.end());
   std::sort(lists.enclosed.begin() + first, lists.enclosed.end());
   return enclosed.size();
 }
 
-/// Collects the triangles of both sides, relative to a point of the curve and scaled to about 1 or less.
-/// Returns the scale.
-double CurveFinder::collect_parts(std::span<const std::uint32_t> members) {
-  const auto surface_of = [&](std::size_t side) { return side == 0 ? input_.a : input_.b; };
+/// Finds on both surfaces what is behind each curve.
+void CurveFinder::link_regions() {
+  const std::array<SurfaceView, 2> surfaces{input_.a, input_.b};
+  for (std::size_t side = 0; side < 2; ++side) {
+    regions_[side].start(surfaces[side]);
+    for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
+      // A curve whose sides are one has nothing behind it.
+      if (is_one_sided_[members_[first_member_[curve_of_[i]]]] != 0) continue;
+      const bool of_b = (side != 0) != is_turned(i);
+      const std::uint32_t id = triangle_of(i, side);
+      const Triangle& triangle = surfaces[side].triangle(id);
+      const TrianglePoints other = surfaces[1 - side].corners(triangle_of(i, 1 - side));
+      for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
+        const std::uint32_t place = first_place(i) + k;
+        const Feature& feature = of_b ? points_[place].on_b : points_[place].on_a;
+        regions_[side].add(
+            {name_of(feature, triangle, id), triangle, other, position(place), key_[place], curve_of_[i]});
+      }
+    }
+    regions_[side].link(static_cast<std::uint32_t>(first_member_.size() - 1));
+  }
+  way_out_.start({input_.a, input_.same_object ? nullptr : input_.queried_a},
+                 {input_.b, input_.same_object ? nullptr : input_.queried_b});
+}
+
+/// Chooses the direction with the least depth.
+void CurveFinder::find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
+  const std::array<SurfaceView, 2> surfaces{input_.a, input_.b};
   double largest = 0;
   for (std::size_t side = 0; side < 2; ++side) {
-    const SurfaceView surface = surface_of(side);
-    std::vector<std::uint32_t>& triangles = triangles_[side];
-    std::vector<std::uint8_t>& is_listed = is_listed_[side];
-    for (const std::uint32_t t : triangles) is_listed[t] = 0;
-    triangles.clear();
-    is_listed.resize(std::max(is_listed.size(), surface.octree->triangles().size()), 0);
-    const auto add = [&](std::uint32_t t) {
-      if (is_listed[t] == 0) triangles.push_back(t);
-      is_listed[t] = 1;
+    const auto include = [&](std::uint32_t t) {
+      for (const Vec3d& p : surfaces[side].corners(t)) largest = std::max(largest, largest_magnitude(p));
     };
-    for (const std::uint32_t i : members) {
-      const bool of_b = (side != 0) != is_turned(i);
-      add(of_b ? contact(i).triangle_b : contact(i).triangle_a);
-    }
-    for (const std::uint32_t v : behind_[side]) {
-      for (const std::uint32_t t : surface.around->around(v)) add(t);
-    }
-    for (const std::uint32_t t : triangles) {
-      for (const Vec3d& p : surface.corners(t)) largest = std::max(largest, largest_magnitude(p));
-    }
+    for (const std::uint32_t i : members) include(triangle_of(i, side));
+    for_each_behind(side, [&](std::uint32_t v) {
+      for (const std::uint32_t t : surfaces[side].around->around(v)) include(t);
+    });
   }
   const double scale = scale_of(largest);
   const Vec3d origin = scale * position(first_place(members.front()));
-  parts_.clear();
+  way_out_.clear(scale, origin);
   for (std::size_t side = 0; side < 2; ++side) {
-    for (const std::uint32_t t : triangles_[side]) {
-      TrianglePoints corners = surface_of(side).corners(t);
-      for (Vec3d& p : corners) p = scale * p - origin;
-      parts_.add(side, corners);
-    }
+    for (const std::uint32_t i : members) way_out_.add_triangle(side, triangle_of(i, side));
+    for_each_behind(side, [&](std::uint32_t v) {
+      for (const std::uint32_t t : surfaces[side].around->around(v)) way_out_.add_triangle(side, t);
+    });
+    for (const std::uint32_t v : regions_[side].inside())
+      way_out_.add_probe(side, surfaces[side].position(v));
+    for (const Vec3d& p : regions_[side].middles()) way_out_.add_probe(side, p);
   }
-  return scale;
-}
 
-/// Chooses the normal with the least depth. One along which nothing is ahead does not lead out; it counts
-/// only where all are such.
-void CurveFinder::find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
-  list_normals(members);
-  const double scale = collect_parts(members);
-  ways_.clear();
-  for (const Vec3d& normal : normals_) ways_.push_back(parts_.way_along(normal));
-  const auto best = std::min_element(ways_.begin(), ways_.end()) - ways_.begin();
-  double depth = ways_[static_cast<std::size_t>(best)];
-  curve.normal = normals_[static_cast<std::size_t>(best)];
-  // Between equal ways it is the middle one, so that the normal of a symmetric curve is symmetric.
-  Vec3d sum;
-  std::size_t equal = 0;
-  for (std::size_t i = 0; i < ways_.size(); ++i) {
-    if (ways_[i] > depth * (1 + 0x1p-36)) continue;
-    sum = sum + normals_[i];
-    ++equal;
+  list_face_normals(members);
+  candidates_.clear();
+  for (const Direction& direction : directions_) {
+    const Vec3d normal{direction.normal[0], direction.normal[1], direction.normal[2]};
+    // A face of b, which points of a leave; a face of a, from which points of b go away.
+    const std::size_t moves = direction.side == 0 ? 1 : 0;
+    const double sign = moves == 0 ? -1 : 1;
+    const Vec3d plane = scale * surfaces[direction.side].corners(direction.triangle)[0] - origin;
+    double behind = 0;
+    const auto include = [&](const Vec3d& p) {
+      behind = std::max(behind, sign * dot(normal, scale * p - origin - plane));
+    };
+    for (const std::uint32_t v : regions_[moves].inside()) include(surfaces[moves].position(v));
+    for_each_point(members, include);
+    candidates_.push_back({normal, behind});
   }
-  if (equal > 1 && norm(sum) > 0x1p-10) {
-    curve.normal = unit_or_zero(sum);
-    depth = parts_.way_along(curve.normal);
-  }
-  curve.depth = depth == CurveParts::nothing_ahead ? 0 : restored(depth, scale);
+  const auto is_near = [&](const WayCandidate& c) { return squared_norm(c.normal - of_area_) < 0x1p-34; };
+  if (of_area_ != Vec3d{} && std::none_of(candidates_.begin(), candidates_.end(), is_near))
+    candidates_.push_back({of_area_});
+  if (candidates_.empty()) candidates_.push_back({mean_normal(members)});
+  const WayOut::Way way = way_out_.find(candidates_);
+  curve.normal = way.normal;
+  curve.depth = way.depth == WayOut::none ? 0 : restored(way.depth, scale);
 }
 
 }  // namespace supple

@@ -5,10 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "answers/penetration/curve_parts.hpp"
+#include "answers/penetration/contact_regions.hpp"
 #include "answers/penetration/curve_side.hpp"
 #include "answers/penetration/parity_sets.hpp"
 #include "answers/penetration/surface_view.hpp"
+#include "answers/penetration/way_out.hpp"
 #include "queries/feature_name.hpp"
 #include "supple/penetration.hpp"
 #include "supple/result.hpp"
@@ -33,6 +34,8 @@ struct CurveLists {
 /// The contacts of two objects, or of one object with itself.
 struct CurveInput {
   SurfaceView a, b;
+  const QueriedObject *queried_a = nullptr, *queried_b = nullptr;
+  bool a_is_solid = false, b_is_solid = false;
   bool same_object = false;
   const ContactGroup* group = nullptr;
   const DetectResult* result = nullptr;  ///< with the contacts of the group, and their points
@@ -67,10 +70,10 @@ class CurveFinder {
   void measure(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   void list_face_normals(std::span<const std::uint32_t> members);
   Vec3d direction_of_segments(std::span<const std::uint32_t> members) const;
-  void list_normals(std::span<const std::uint32_t> members);
+  Vec3d mean_normal(std::span<const std::uint32_t> members) const;
+  void link_regions();
   bool only_touches(std::uint32_t i) const;
   double length_of(std::uint32_t i) const;
-  double collect_parts(std::span<const std::uint32_t> members);
   void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
 
@@ -84,6 +87,15 @@ class CurveFinder {
     for (const std::uint32_t i : members) {
       for (std::uint32_t k = 0; k < contact(i).point_count; ++k) function(position(first_place(i) + k));
     }
+  }
+  template <class Function>
+  void for_each_behind(std::size_t side, Function function) const {
+    for (const std::uint32_t v : regions_[side].inside()) function(v);
+    for (const std::uint32_t v : regions_[side].beyond()) function(v);
+  }
+  /// On side a or b of the curve.
+  std::uint32_t triangle_of(std::uint32_t i, std::size_t side) const {
+    return (side != 0) != is_turned(i) ? contact(i).triangle_b : contact(i).triangle_a;
   }
   std::uint32_t degree(std::uint32_t key) const { return first_link_[key + 1] - first_link_[key]; }
   /// Whether side a of the curve is object b of the contact: only within one object.
@@ -108,18 +120,18 @@ class CurveFinder {
 
   /// A direction in which a may leave b, with the length of the curve on faces of that normal.
   struct Direction {
-    std::array<double, 3> rounded{}, normal{};  // the first is equal for normals that differ by rounding
+    std::array<double, 3> rounded{};  // equal for normals that differ by rounding
+    std::uint8_t side = 0;            // of the faces
+    std::array<double, 3> normal{};
+    std::uint32_t triangle = 0;
     double length = 0;
     constexpr auto operator<=>(const Direction&) const = default;
   };
   std::vector<Direction> directions_;
-  std::vector<Vec3d> normals_;                        // from which that of the curve is chosen
-  std::vector<double> ways_;                          // along them
-  std::array<std::vector<std::uint32_t>, 2> behind_;  // vertices of both surfaces
+  std::vector<WayCandidate> candidates_;
   CurveSide side_;
-  CurveParts parts_;
-  std::array<std::vector<std::uint32_t>, 2> triangles_;  // of the parts
-  std::array<std::vector<std::uint8_t>, 2> is_listed_;   // by triangle
+  std::array<ContactRegions, 2> regions_;  // of the surfaces
+  WayOut way_out_;
 };
 
 }  // namespace supple

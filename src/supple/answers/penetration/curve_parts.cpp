@@ -85,22 +85,18 @@ double way_between(const TrianglePoints& a, const TrianglePoints& b) {
 
 }  // namespace
 
-double CurveParts::way_along(const Vec3d& normal) {
+double CurveParts::way_along(const Vec3d& normal, double limit) {
   const Vec3d size = absolute(normal);
   const bool x_is_least = size.x <= size.y && size.x <= size.z;
   const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
   const Vec3d across = cross(normal, axis), u = across / norm(across), v = cross(normal, u);
+  axes_ = {u, v, normal};
+  if (triangles_[0].empty() || triangles_[1].empty()) return nothing_ahead;
   for (std::size_t side = 0; side < 2; ++side) {
-    projected_[side].clear();
-    for (TrianglePoints triangle : triangles_[side]) {
-      for (Vec3d& p : triangle) p = {dot(u, p), dot(v, p), dot(normal, p)};
-      Box box{triangle[0], triangle[0]};
-      for (const Vec3d& p : triangle) box.include({p, p});
-      projected_[side].push_back({triangle, box});
-    }
-    if (projected_[side].empty()) return nothing_ahead;
-    build(side);
+    if (!is_built_) build(side);
+    project(side);
   }
+  is_built_ = true;
   constexpr double none = -std::numeric_limits<double>::infinity();
   double longest = none;
   const auto push = [&](std::uint32_t a, std::uint32_t b) {
@@ -112,7 +108,7 @@ double CurveParts::way_along(const Vec3d& normal) {
   };
   stack_.clear();
   push(0, 0);
-  while (!stack_.empty()) {
+  while (!stack_.empty() && longest <= limit) {
     const auto [a, b, bound] = stack_.back();
     stack_.pop_back();
     if (bound <= longest) continue;
@@ -136,33 +132,75 @@ double CurveParts::way_along(const Vec3d& normal) {
   return longest == none ? nothing_ahead : std::max(longest, 0.0);
 }
 
-/// A binary tree over the projected triangles of a side.
+bool CurveParts::is_covered(std::size_t side, const Vec3d& point, double way) {
+  const Vec3d p = seen(point);
+  const double sign = side == 0 ? 1 : -1;
+  const auto& nodes = nodes_[1 - side];
+  stack_.assign(1, {0, 0, 0});
+  while (!stack_.empty()) {
+    const Node& node = nodes[stack_.back().a];
+    stack_.pop_back();
+    const Box& box = node.box;
+    if (p.x < box.min.x || p.x > box.max.x || p.y < box.min.y || p.y > box.max.y) continue;
+    if (node.child != 0) {
+      stack_.push_back({node.child, 0, 0});
+      stack_.push_back({node.child + 1, 0, 0});
+    }
+    for (std::uint32_t i = node.first; node.child == 0 && i < node.last; ++i) {
+      const TrianglePoints& q = projected_[1 - side][i].corners;
+      const double area = turn(q[0], q[1], q[2]), a = turn(q[1], q[2], p) / area,
+                   b = turn(q[2], q[0], p) / area;
+      const double height = sign * (a * q[0].z + b * q[1].z + (1 - a - b) * q[2].z - p.z);
+      if (a >= 0 && b >= 0 && a + b <= 1 && height >= 0 && height <= way * (1 + 0x1p-36)) return true;
+    }
+  }
+  return false;
+}
+
+/// A binary tree over the triangles of a side; a child stands behind its parent.
 void CurveParts::build(std::size_t side) {
   nodes_[side].clear();
-  nodes_[side].push_back({{}, 0, static_cast<std::uint32_t>(projected_[side].size()), 0});
+  nodes_[side].push_back({{}, 0, static_cast<std::uint32_t>(triangles_[side].size()), 0});
   for (std::uint32_t node = 0; node < nodes_[side].size(); ++node) split(side, node);
 }
 
 void CurveParts::split(std::size_t side, std::uint32_t number) {
   constexpr std::uint32_t leaf_size = 2;
-  Node node = nodes_[side][number];
-  auto& triangles = projected_[side];
-  node.box = triangles[node.first].box;
-  for (std::uint32_t i = node.first + 1; i < node.last; ++i) node.box.include(triangles[i].box);
-  if (node.last - node.first > leaf_size) {
-    const Vec3d size = node.box.max - node.box.min;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::uint32_t middle = node.first + (node.last - node.first) / 2;
-    const auto at = [&](std::uint32_t i) { return triangles.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(node.first), at(middle), at(node.last),
-                     [axis](const Projected& p, const Projected& q) {
-                       return p.box.min[axis] + p.box.max[axis] < q.box.min[axis] + q.box.max[axis];
-                     });
-    node.child = static_cast<std::uint32_t>(nodes_[side].size());
-    nodes_[side].push_back({{}, node.first, middle, 0});
-    nodes_[side].push_back({{}, middle, node.last, 0});
+  const Node node = nodes_[side][number];
+  if (node.last - node.first <= leaf_size) return;
+  const auto at = [&](std::uint32_t i) { return triangles_[side].begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto middle_of = [](const TrianglePoints& p) { return p[0] + p[1] + p[2]; };
+  Box box{middle_of(*at(node.first)), middle_of(*at(node.first))};
+  for (std::uint32_t i = node.first + 1; i < node.last; ++i)
+    box.include({middle_of(*at(i)), middle_of(*at(i))});
+  const Vec3d size = box.max - box.min;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::uint32_t middle = node.first + (node.last - node.first) / 2;
+  std::nth_element(at(node.first), at(middle), at(node.last),
+                   [axis](const TrianglePoints& p, const TrianglePoints& q) {
+                     return p[0][axis] + p[1][axis] + p[2][axis] < q[0][axis] + q[1][axis] + q[2][axis];
+                   });
+  nodes_[side][number].child = static_cast<std::uint32_t>(nodes_[side].size());
+  nodes_[side].push_back({{}, node.first, middle, 0});
+  nodes_[side].push_back({{}, middle, node.last, 0});
+}
+
+/// The triangles and the boxes of the nodes as seen along the normal.
+void CurveParts::project(std::size_t side) {
+  projected_[side].clear();
+  for (TrianglePoints triangle : triangles_[side]) {
+    for (Vec3d& p : triangle) p = seen(p);
+    Box box{triangle[0], triangle[0]};
+    for (const Vec3d& p : triangle) box.include({p, p});
+    projected_[side].push_back({triangle, box});
   }
-  nodes_[side][number] = node;
+  for (std::size_t i = nodes_[side].size(); i-- > 0;) {
+    Node& node = nodes_[side][i];
+    node.box = node.child != 0 ? nodes_[side][node.child].box : projected_[side][node.first].box;
+    if (node.child != 0) node.box.include(nodes_[side][node.child + 1].box);
+    for (std::uint32_t k = node.first + 1; node.child == 0 && k < node.last; ++k)
+      node.box.include(projected_[side][k].box);
+  }
 }
 
 }  // namespace supple

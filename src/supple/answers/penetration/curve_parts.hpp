@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "geometry/vector.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "supple/types.hpp"
 
@@ -16,17 +17,25 @@ class CurveParts {
  public:
   void clear() {
     for (auto& part : triangles_) part.clear();
+    is_built_ = false;
   }
   /// Coordinates are about 1 or less. `side` is 0 for a and 1 for b.
-  void add(std::size_t side, const TrianglePoints& corners) { triangles_[side].push_back(corners); }
+  void add(std::size_t side, const TrianglePoints& corners) {
+    triangles_[side].push_back(corners);
+    is_built_ = false;
+  }
 
   static constexpr double nothing_ahead = std::numeric_limits<double>::infinity();
 
   /// The longest way along the unit vector from a point of a to a point of b, at least 0: so a passes b by
   /// this move. Triangles that are parallel to the vector, or that overlap only by rounding as seen along it,
-  /// have no such points. Where there are none at all, `nothing_ahead`. O(n log n) for n triangles whose
-  /// pairs have different ways.
-  double way_along(const Vec3d& normal);
+  /// have no such points. Where there are none at all, `nothing_ahead`. The search ends where the way exceeds
+  /// `limit`. O(n log n) for n triangles whose pairs have different ways, and O(n) for further directions.
+  double way_along(const Vec3d& normal, double limit = nothing_ahead);
+
+  /// After `way_along`: whether a triangle of the other side is straight ahead of a point of a, or straight
+  /// behind a point of b, within the way. Points on borders count.
+  bool is_covered(std::size_t side, const Vec3d& point, double way);
 
  private:
   /// By the coordinates across the vector, and its height along it in z.
@@ -55,11 +64,15 @@ class CurveParts {
 
   void build(std::size_t side);
   void split(std::size_t side, std::uint32_t node);
+  void project(std::size_t side);
+  Vec3d seen(const Vec3d& p) const { return {dot(axes_[0], p), dot(axes_[1], p), dot(axes_[2], p)}; }
 
   std::array<std::vector<TrianglePoints>, 2> triangles_;
   std::array<std::vector<Projected>, 2> projected_;
   std::array<std::vector<Node>, 2> nodes_;
   std::vector<Pair> stack_;
+  bool is_built_ = false;
+  std::array<Vec3d, 3> axes_;  // the last one is the vector
 };
 
 }  // namespace supple

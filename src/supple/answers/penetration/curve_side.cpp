@@ -5,8 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "geometry/vector.hpp"
-
 namespace supple {
 
 void CurveSide::start(std::size_t vertex_count) {
@@ -16,7 +14,6 @@ void CurveSide::start(std::size_t vertex_count) {
   crossings_.clear();
   corners_.clear();
   triangles_.clear();
-  behind_ = {};
 }
 
 void CurveSide::add_triangle(const Triangle& triangle) {
@@ -38,14 +35,10 @@ void CurveSide::add_crossing(std::uint32_t v, std::uint32_t w, std::uint32_t key
   crossings_.push_back({corner, other, key});
 }
 
-std::span<const std::uint32_t> CurveSide::enclose(const SurfaceView& surface, const Direction& direction,
-                                                  std::size_t most_behind) {
+std::span<const std::uint32_t> CurveSide::enclose(const SurfaceView& surface, std::uint32_t behind) {
   if (!list_cuts() || !color_corners() || !start_flood()) return {};
-  std::optional<std::size_t> behind = color_behind(surface, direction);
-  const std::vector<std::uint32_t>* const smaller = flood(surface, behind, most_behind);
-  if (smaller == nullptr) return {};
-  behind_ = behind ? flooded_[*behind] : *smaller;
-  return *smaller;
+  const std::vector<std::uint32_t>* const smaller = flood(surface, behind);
+  return smaller == nullptr ? std::span<const std::uint32_t>() : *smaller;
 }
 
 bool CurveSide::is_cut(std::uint32_t corner, std::uint32_t other) const {
@@ -91,23 +84,6 @@ bool CurveSide::color_corners() {
   return true;
 }
 
-/// The colour of the corners that are behind. Nothing when there is no direction, or hardly a difference.
-std::optional<std::size_t> CurveSide::color_behind(const SurfaceView& surface, const Direction& direction) {
-  std::array<double, 2> sums{}, counts{};
-  double extent = 0;
-  for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-    const std::size_t color = color_of(c);
-    const Vec3d way = direction.scale * surface.position(corners_[c]) - direction.from;
-    sums[color] += dot(direction.towards_behind, way);
-    counts[color] += 1;
-    extent = std::max(extent, largest_magnitude(way));
-  }
-  if (counts[0] == 0 || counts[1] == 0) return {};
-  const double difference = sums[0] / counts[0] - sums[1] / counts[1];
-  if (!(std::fabs(difference) > 0x1p-7 * extent)) return {};
-  return difference > 0 ? 0 : 1;
-}
-
 /// Marks the corners by their colours. False when the curve has several pieces on this surface.
 bool CurveSide::start_flood() {
   constexpr std::uint32_t almost_all = 0xfffffff0;
@@ -126,25 +102,16 @@ bool CurveSide::start_flood() {
   return true;
 }
 
-/// Floods both sides of the curve in turns, without crossing it, until one of them is complete, and then the
-/// one that is behind; `behind` loses its value when that side has more than `most_behind` vertices and is
-/// not the smaller one. Returns the smaller side; null when they are the same side.
-const std::vector<std::uint32_t>* CurveSide::flood(const SurfaceView& surface,
-                                                   std::optional<std::size_t>& behind,
-                                                   std::size_t most_behind) {
-  const std::vector<std::uint32_t>* smaller = nullptr;
+/// Floods both sides of the curve in turns, without crossing it, until one of them is complete. Returns this
+/// side; null when they are the same side.
+const std::vector<std::uint32_t>* CurveSide::flood(const SurfaceView& surface, std::uint32_t behind) {
   for (std::size_t next = 0;; ++next) {
     for (std::size_t color = 0; color < 2; ++color) {
-      if (smaller == nullptr && next == flooded_[color].size()) {
-        smaller = &flooded_[color];
-        // When both are equal, the one behind counts as the smaller one.
-        if (behind && flooded_[*behind].size() == next) smaller = &flooded_[*behind];
+      if (next == flooded_[color].size()) {
+        const bool are_equal = flooded_[1 - color].size() == next;
+        return &flooded_[are_equal && behind != none && marks_[behind] == mark_of(1 - color) ? 1 - color
+                                                                                             : color];
       }
-      if (smaller != nullptr && behind && smaller != &flooded_[*behind] &&
-          flooded_[*behind].size() > most_behind)
-        behind.reset();
-      if (smaller != nullptr && (!behind || next >= flooded_[*behind].size())) return smaller;
-      if (next >= flooded_[color].size()) continue;
       const std::uint32_t v = flooded_[color][next];
       for (const std::uint32_t t : surface.around->around(v)) {
         for (const std::uint32_t w : surface.triangle(t)) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,27 +16,16 @@ namespace supple {
 /// The triangles of one surface that a curve crosses, and the vertices on both sides of it. Keeps its memory.
 class CurveSide {
  public:
-  /// Where a curve leaves a surface: "behind" is farther along the direction, which may be zero, from a point
-  /// in scaled coordinates.
-  struct Direction {
-    Vec3d towards_behind, from;
-    double scale = 1;
-  };
-
   /// Starts another curve.
   void start(std::size_t vertex_count);
   void add_triangle(const Triangle& triangle);
   /// The edge is one of a triangle that was added. Repeated crossings count once.
   void add_crossing(std::uint32_t v, std::uint32_t w, std::uint32_t key);
 
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
   /// The vertices of the smaller of the two parts into which the curve cuts the surface; when both are equal,
-  /// the part behind. None when the curve does not cut it in two. The part behind counts only when it is the
-  /// smaller one or has at most `most_behind` vertices.
-  std::span<const std::uint32_t> enclose(const SurfaceView& surface, const Direction& direction,
-                                         std::size_t most_behind);
-  /// The vertices of the part behind after `enclose`; those of the smaller part when it is not known which
-  /// part is behind.
-  std::span<const std::uint32_t> behind() const { return behind_; }
+  /// the part of the vertex `behind`, if there is one. None when the curve does not cut it in two.
+  std::span<const std::uint32_t> enclose(const SurfaceView& surface, std::uint32_t behind = none);
 
  private:
   /// Where the curve crosses an edge between two corners, and the key of that point.
@@ -45,17 +33,13 @@ class CurveSide {
     std::uint32_t corner = 0, other = 0, key = 0;  // corner < other
     constexpr auto operator<=>(const Crossing&) const = default;
   };
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
-
   bool list_cuts();
   bool color_corners();
   std::size_t color_of(std::uint32_t corner) {
     return (colors_.find(corner).is_opposite != is_opposite_to_first_) ? 1 : 0;
   }
-  std::optional<std::size_t> color_behind(const SurfaceView& surface, const Direction& direction);
   bool start_flood();
-  const std::vector<std::uint32_t>* flood(const SurfaceView& surface, std::optional<std::size_t>& behind,
-                                          std::size_t most_behind);
+  const std::vector<std::uint32_t>* flood(const SurfaceView& surface, std::uint32_t behind);
   bool is_cut(std::uint32_t corner, std::uint32_t other) const;
   std::uint32_t mark_of(std::size_t color) const { return last_mark_ + static_cast<std::uint32_t>(color); }
 
@@ -71,7 +55,6 @@ class CurveSide {
   std::vector<std::uint32_t> marks_;   // by vertex
   std::uint32_t last_mark_ = 0;
   std::array<std::vector<std::uint32_t>, 2> flooded_;  // by colour
-  std::span<const std::uint32_t> behind_;
 };
 
 }  // namespace supple

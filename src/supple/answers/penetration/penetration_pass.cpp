@@ -29,10 +29,10 @@ std::span<Item> part_of(std::vector<Item>& list, Range range) {
 }  // namespace
 
 bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObject> objects,
-                          const DetectResult& result, PenetrationDepths depths) {
+                          const DetectResult& result, Lists lists) {
   objects_ = objects;
   list_pairs(input.jobs);
-  outcomes_.plan(pairs_, input.versions, std::exchange(depths_, depths) == depths);
+  outcomes_.plan(pairs_, input.versions, std::exchange(lists_, lists) == lists);
   tasks_.clear();
   for (const std::uint32_t i : outcomes_.open_jobs()) tasks_.push_back({i, {}});
   outcomes_.expect_tasks(tasks_.size());
@@ -89,8 +89,9 @@ std::array<std::uint32_t, PenetrationPass::list_count> PenetrationPass::sizes_of
 void PenetrationPass::run_task(const Task& task, const DetectResult& result, Worker& worker) const {
   const PenetratedObject &inner = objects_[task.inner], &outer = objects_[task.outer];
   if (task.inner != task.outer && outer.is_solid) find_inside(task, result, worker);
-  if (task.inner <= task.outer && task.group != nullptr)
-    worker.curve_finder.find({inner.surface, outer.surface, task.inner == task.outer, task.group, &result},
+  if (lists_.curves && task.inner <= task.outer && task.group != nullptr)
+    worker.curve_finder.find({inner.surface, outer.surface, &inner.queried, &outer.queried, inner.is_solid,
+                              outer.is_solid, task.inner == task.outer, task.group, &result},
                              worker.curves);
 }
 
@@ -203,7 +204,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   for (const std::uint32_t v : corners) marks[v] = 0;
   for (std::size_t i = first_inside; i < worker.inside.size(); ++i) marks[worker.inside[i]] = 0;
   worker.has_marks = false;
-  if (depths_ == PenetrationDepths::deepest) keep_deepest(task, first_inside, worker);
+  if (lists_.depths == PenetrationDepths::deepest) keep_deepest(task, first_inside, worker);
   std::sort(worker.inside.begin() + static_cast<std::ptrdiff_t>(first_inside), worker.inside.end());
   std::sort(worker.on_surface.begin() + static_cast<std::ptrdiff_t>(first_on_surface),
             worker.on_surface.end());

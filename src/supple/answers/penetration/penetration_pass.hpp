@@ -40,9 +40,15 @@ struct PenetratedObject {
 /// memory between steps.
 class PenetrationPass {
  public:
+  /// What is listed besides contained parts.
+  struct Lists {
+    PenetrationDepths depths = PenetrationDepths::all;
+    bool curves = false;
+    bool operator==(const Lists&) const = default;
+  };
   /// `result` has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
   bool run(const PassInput& input, std::span<const PenetratedObject> objects, const DetectResult& result,
-           PenetrationDepths depths);
+           Lists lists);
 
   std::span<const PenetrationGroup> groups() const { return groups_; }
   std::span<const Penetration> penetrations() const { return penetrations_; }
@@ -116,7 +122,7 @@ class PenetrationPass {
   void find_depths(std::size_t begin, std::size_t end, Worker& worker);
 
   std::span<const PenetratedObject> objects_;
-  PenetrationDepths depths_ = PenetrationDepths::all;
+  Lists lists_;
   std::vector<Worker> workers_;
   std::vector<ContactJob> pairs_;  // inner and outer object, ascending
   std::vector<ContactTask> tasks_;

@@ -1,0 +1,189 @@
+#include "answers/penetration/way_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "geometry/vector.hpp"
+
+namespace supple {
+namespace {
+
+/// Depths within this ratio count as equal.
+constexpr double equal = 1 + 0x1p-36;
+
+/// Of directions with equal depths, the first along x, then y, then z: the same one in a mirror, and when a
+/// and b are exchanged.
+bool is_before(const Vec3d& p, const Vec3d& q) {
+  const auto rounded = [](double x) { return std::floor(std::fabs(x) * 0x1p20 + 0.5); };
+  return std::tuple(rounded(q.x), rounded(q.y), rounded(q.z)) <
+         std::tuple(rounded(p.x), rounded(p.y), rounded(p.z));
+}
+
+bool is_in_box(const Aabb& box, const Vec3d& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] < double{box.min[axis]} || p[axis] > double{box.max[axis]}) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void WayOut::start(const Body& a, const Body& b) {
+  bodies_ = {a, b};
+  for (std::size_t side = 0; side < 2; ++side) {
+    queries_[side].start();
+    for (const std::uint32_t t : triangles_[side]) is_listed_[side][t] = 0;
+    triangles_[side].clear();
+    is_listed_[side].resize(
+        std::max(is_listed_[side].size(), bodies_[side].surface.octree->triangles().size()), 0);
+  }
+}
+
+void WayOut::clear(double scale, const Vec3d& origin) {
+  scale_ = scale;
+  origin_ = origin;
+  parts_.clear();
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const std::uint32_t t : triangles_[side]) is_listed_[side][t] = 0;
+    triangles_[side].clear();
+    probes_[side].clear();
+  }
+}
+
+void WayOut::add_triangle(std::size_t side, std::uint32_t triangle) {
+  if (is_listed_[side][triangle] != 0) return;
+  triangles_[side].push_back(triangle);
+  is_listed_[side][triangle] = 1;
+  TrianglePoints corners = bodies_[side].surface.corners(triangle);
+  for (Vec3d& p : corners) p = scale_ * p - origin_;
+  parts_.add(side, corners);
+}
+
+/// Leaves the outermost probes where there are many.
+void WayOut::choose_probes(std::size_t side) {
+  constexpr std::size_t few = 24;
+  std::vector<Vec3d>& probes = probes_[side];
+  if (probes.size() <= few) return;
+  chosen_.clear();
+  for (int direction = 0; direction < 27; ++direction) {
+    const Vec3d n{direction % 3 - 1.0, direction / 3 % 3 - 1.0, direction / 9 - 1.0};
+    const auto height = [&](const Vec3d& p) { return dot(n, scale_ * p - origin_); };
+    const Vec3d& farthest = *std::max_element(
+        probes.begin(), probes.end(), [&](const Vec3d& p, const Vec3d& q) { return height(p) < height(q); });
+    if (std::find(chosen_.begin(), chosen_.end(), farthest) == chosen_.end()) chosen_.push_back(farthest);
+  }
+  probes.swap(chosen_);
+}
+
+/// How far a probe is from where it leaves the other body along `normal`, scaled; less than 0 when it does
+/// not meet its surface from inside. The triangle that it meets becomes one of the parts.
+double WayOut::cast(std::size_t side, const Vec3d& probe, const Vec3d& normal) {
+  const Body& other = bodies_[1 - side];
+  const Vec3d direction = side == 0 ? normal : Vec3d{} - normal;
+  const auto hit = queries_[1 - side].cast(std::span(other.queried, 1), {probe, direction}, false);
+  if (!hit || !(dot(unit_normal(other.surface.corners(hit->triangle)), direction) > 0)) return -1;
+  if (is_listed_[1 - side][hit->triangle] == 0) {
+    for (const std::uint32_t v : other.surface.triangle(hit->triangle)) {
+      for (const std::uint32_t t : other.surface.around->around(v)) add_triangle(1 - side, t);
+    }
+  }
+  return scale_ * hit->t;
+}
+
+/// Ends early when the depth exceeds the limit.
+WayOut::Tried WayOut::try_along(const Vec3d& normal, double limit) {
+  double way = parts_.way_along(normal, limit * equal), depth = way == none ? -1 : way;
+  for (std::size_t side = 0; side < 2 && bodies_[0].queried != nullptr && depth <= limit * equal; ++side) {
+    for (const Vec3d& probe : probes_[side]) {
+      if (way != none && parts_.is_covered(side, scale_ * probe - origin_, way)) continue;
+      const double exit = cast(side, probe, normal);
+      if (exit <= depth) continue;
+      // The triangle through which the probe leaves is a part now.
+      if (exit <= limit * equal) way = parts_.way_along(normal, limit * equal);
+      depth = std::max(exit, way == none ? -1 : way);
+      if (depth > limit * equal) break;
+    }
+  }
+  return {{normal, depth < 0 ? none : depth}, depth > limit * equal};
+}
+
+double WayOut::least_depth() const {
+  double least = none;
+  for (const Tried& tried : tried_) least = tried.is_pruned ? least : std::min(least, tried.way.depth);
+  return least;
+}
+
+/// Tries the shortest moves after which nothing is behind two or three faces: out of a corner.
+void WayOut::try_corners(std::span<const WayCandidate> candidates) {
+  const auto try_move = [&](const Vec3d& move) {
+    const double length = norm(move);
+    if (length > 0 && length * equal < least_depth())
+      tried_.push_back(try_along((1 / length) * move, least_depth()));
+  };
+  constexpr double least_angle = 0x1p-20;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const auto& [n_i, behind_i] = candidates[i];
+    for (std::size_t k = 0; k < i && behind_i < least_depth(); ++k) {
+      const auto& [n_k, behind_k] = candidates[k];
+      const double c = dot(n_i, n_k), sine = 1 - c * c;
+      if (!(behind_k < least_depth()) || sine < least_angle) continue;
+      try_move(((behind_i - c * behind_k) / sine) * n_i + ((behind_k - c * behind_i) / sine) * n_k);
+      for (std::size_t m = 0; m < k; ++m) {
+        const auto& [n_m, behind_m] = candidates[m];
+        const double volume = dot(n_i, cross(n_k, n_m));
+        if (!(behind_m < least_depth()) || std::fabs(volume) < least_angle) continue;
+        try_move((1 / volume) *
+                 (behind_i * cross(n_k, n_m) + behind_k * cross(n_m, n_i) + behind_m * cross(n_i, n_k)));
+      }
+    }
+  }
+}
+
+/// The depth from which on no probe is inside: it may leave one part of the other body and enter the next
+/// one.
+double WayOut::depth_without_return(const Way& way) {
+  constexpr int most = 16;  // parts, before rounding decides
+  double depth = way.depth;
+  bool is_free = bodies_[0].queried == nullptr;
+  for (int i = 0; i < most && !is_free; ++i) {
+    is_free = true;
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (const Vec3d& probe : probes_[side]) {
+        const double moved = depth * (1 + 0x1p-30) + 0x1p-44, sign = side == 0 ? 1 : -1;
+        const Vec3d place = probe + (sign * moved / scale_) * way.normal;
+        const double exit =
+            is_in_box(bodies_[1 - side].queried->box, place) ? cast(side, place, way.normal) : -1;
+        if (exit < 0) continue;
+        depth = moved + exit;
+        is_free = false;
+      }
+    }
+  }
+  return depth;
+}
+
+WayOut::Way WayOut::find(std::span<const WayCandidate> candidates) {
+  for (std::size_t side = 0; side < 2; ++side) choose_probes(side);
+  tried_.clear();
+  for (const WayCandidate& candidate : candidates)
+    tried_.push_back(try_along(candidate.normal, least_depth()));
+  try_corners(candidates);
+  for (;;) {
+    const double least = least_depth();
+    Tried* best = nullptr;
+    for (Tried& tried : tried_) {
+      if (tried.is_pruned || tried.way.depth > least * equal) continue;
+      if (best == nullptr || is_before(tried.way.normal, best->way.normal)) best = &tried;
+    }
+    if (least == none) return best->way;
+    const double depth = depth_without_return(best->way);
+    if (depth == best->way.depth) return best->way;
+    best->way.depth = depth;
+    for (Tried& tried : tried_) {
+      if (tried.is_pruned && tried.way.depth < depth) tried = try_along(tried.way.normal, depth);
+    }
+  }
+}
+
+}  // namespace supple

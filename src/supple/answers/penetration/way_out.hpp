@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "answers/penetration/curve_parts.hpp"
+#include "answers/penetration/surface_view.hpp"
+#include "queries/object_queries.hpp"
+
+namespace supple {
+
+/// A direction in which a may leave b.
+struct WayCandidate {
+  Vec3d normal;
+  /// For the outward normal of a face of b, and the reverse of that of a face of a: how far a must move so
+  /// that nothing of the other body is behind the plane of the face. In the coordinates of `WayOut`.
+  double behind_face = std::numeric_limits<double>::infinity();
+};
+
+/// Finds the shortest of several ways out: the direction and the depth of a curve. Holds the memory of one
+/// worker.
+class WayOut {
+ public:
+  static constexpr double none = CurveParts::nothing_ahead;
+
+  /// A surface, and the object for rays; null within one object, where no rays are cast.
+  struct Body {
+    SurfaceView surface;
+    const QueriedObject* queried = nullptr;
+  };
+  /// Starts another pair of bodies, a and b.
+  void start(const Body& a, const Body& b);
+
+  /// Starts another curve. Lengths are `scale` times those of the user, a power of two, and positions of
+  /// parts are relative to `origin`.
+  void clear(double scale, const Vec3d& origin);
+  /// A triangle of a (side 0) or b (side 1) at the contact. Repeated ones count once.
+  void add_triangle(std::size_t side, std::uint32_t triangle);
+  /// A point of a side that is inside the other body, in the user's coordinates.
+  void add_probe(std::size_t side, const Vec3d& point) { probes_[side].push_back(point); }
+
+  struct Way {
+    Vec3d normal;
+    double depth = none;  ///< scaled; `none` where no candidate leads out
+  };
+  /// The candidate with the least depth, or a direction between two or three faces with a smaller one. There
+  /// is at least one candidate.
+  Way find(std::span<const WayCandidate> candidates);
+
+ private:
+  struct Tried {
+    Way way;
+    bool is_pruned = false;  // the depth is at least that of the way
+  };
+
+  void choose_probes(std::size_t side);
+  Tried try_along(const Vec3d& normal, double limit);
+  double cast(std::size_t side, const Vec3d& probe, const Vec3d& normal);
+  void try_corners(std::span<const WayCandidate> candidates);
+  double depth_without_return(const Way& way);
+  double least_depth() const;
+
+  std::array<Body, 2> bodies_;
+  std::array<ObjectQueries, 2> queries_;  // rays that meet a body
+  double scale_ = 1;
+  Vec3d origin_;
+  CurveParts parts_;
+  std::array<std::vector<std::uint32_t>, 2> triangles_;  // of the parts
+  std::array<std::vector<std::uint8_t>, 2> is_listed_;   // by triangle
+  std::array<std::vector<Vec3d>, 2> probes_;
+  std::vector<Vec3d> chosen_;
+  std::vector<Tried> tried_;
+};
+
+}  // namespace supple
