@@ -33,6 +33,7 @@ class SeparatingMove {
     for (const auto& [piece, own] : {std::pair(&a, &edges[0]), std::pair(&b, &edges[1])}) {
       for (const Triangle& facet : piece->facets) {
         add(piece->normal(facet), a, b);
+        add(minus({}, piece->normal(facet)), a, b);
         for (std::size_t i = 0; i < 3; ++i) {
           const Point edge = minus(piece->points[facet[(i + 1) % 3]], piece->points[facet[i]]);
           own->insert(std::max(edge, minus({}, edge)));

@@ -79,10 +79,11 @@ bool Detection::find_penetrations(const PassInput& input, StepStats& stats) {
     for (const std::uint32_t slot : {a, b}) {
       if (penetrated_objects_[slot].surface.octree != nullptr) continue;
       WorldObject& object = world_[slot];
+      const std::span<const std::uint8_t> none, inward = question_.curves ? object.inward_triangles() : none;
       penetrated_objects_[slot] = {
           queried_object(world_, slot),
           {&object.octree(), &object.vertex_triangles(), &object.placement().end(),
-           object.resting_view().translation, object.placement().is_mirrored(), object.inward_triangles()},
+           object.resting_view().translation, object.placement().is_mirrored(), inward},
           object.options.solid};
     }
   }

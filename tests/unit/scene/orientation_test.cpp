@@ -16,7 +16,7 @@
 namespace supple {
 namespace {
 
-constexpr SceneOptions penetration{.contacts = ContactKinds::penetration};
+constexpr SceneOptions penetration{.contacts = ContactKinds::penetration, .curves = true};
 
 void turn_over(std::vector<Triangle>& triangles) {
   for (Triangle& triangle : triangles) std::swap(triangle[1], triangle[2]);

@@ -24,7 +24,7 @@ std::vector<ExactPenetration> vertices_inside(const PlainObject& inner, const Pl
 TEST(VerifyCurves, FindsWrongDepthsAndNormals) {
   TriangleMesh crate = make_box({2, 2, 2}, 3), ground = make_box({10, 2, 10}, 1);
   for (Vec3d& p : crate.positions) p = p + Vec3d{0.25, 1.875, 0.125};
-  Scene scene({.contacts = ContactKinds::penetration});
+  Scene scene({.contacts = ContactKinds::penetration, .curves = true});
   const ObjectId a = scene.add(crate, {.solid = true}), b = scene.add(ground, {.solid = true});
   DetectResult result = scene.detect();
   ASSERT_EQ(result.curves.size(), 1u);
