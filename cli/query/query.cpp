@@ -57,7 +57,7 @@ class Run {
 
   const QueryOptions& options_;
   Scene scene_;
-  std::vector<bool> has_triangle_;                    // of finite coordinates, by object
+  std::vector<bool> is_seen_;  // by object: it has a triangle of finite coordinates; for distances, or a line
   std::vector<std::optional<ClosestPoint>> closest_;  // of the kind of the options, as the three below
   std::vector<std::optional<RayHit>> hits_;
   std::vector<Containment> contained_;
@@ -88,7 +88,9 @@ Run::Run(const QueryOptions& options) : options_(options), scene_(scene_options(
   warn_of_missing_threads(scene_.options().threads);
   for (const InputObject& object : input.objects) {
     scene_.add(object.mesh, object.options);
-    has_triangle_.push_back(count_finite_triangles(object.mesh) > 0);
+    const bool has_lines = !object.mesh.edges.empty() || !object.mesh.points.empty();
+    is_seen_.push_back(count_finite_triangles(object.mesh) > 0 ||
+                       (options_.kind == SceneQuery::distance && has_lines));
   }
 }
 
@@ -222,7 +224,7 @@ int Run::report(bool was_ended) const {
 void Run::warn_of_objects_without_triangles() const {
   std::vector<std::string> names;
   for (const ObjectId object : scene_.objects()) {
-    if (!has_triangle_[object.index]) names.push_back(name_of(scene_, object));
+    if (!is_seen_[object.index]) names.push_back(name_of(scene_, object));
   }
   if (names.empty()) return;
   if (names.size() == scene_.objects().size())
@@ -348,9 +350,10 @@ void Run::print() const {
   if (count_ == 0 && count_ < total_) return;
   if (count_ == 0 && !are_distances) return fmt::print("There are no queries.\n");
   if (count_ == 0)
-    return fmt::print("{}", std::ranges::count(has_triangle_, true) < 2
-                                ? "There are no two objects with triangles, so there is no distance.\n"
-                                : "No two objects are within the distance.\n");
+    return fmt::print(
+        "{}", std::ranges::count(is_seen_, true) < 2
+                  ? "There are no two objects with triangles, lines or points, so there is no distance.\n"
+                  : "No two objects are within the distance.\n");
   fmt::print("{}", headings[static_cast<std::size_t>(options_.kind)]);
   for (std::size_t i = 0; i < std::min(count_, most_rows); ++i) print_result(i);
   if (count_ > most_rows)

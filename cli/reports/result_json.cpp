@@ -202,14 +202,15 @@ void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool 
 }
 
 void write_proximity_groups(JsonWriter& json, const DetectResult& result, ProximityListing listing) {
-  constexpr Kinds order[] = {{vertex, vertex}, {vertex, edge}, {vertex, face},
-                             {edge, vertex},   {edge, edge},   {face, vertex}};
+  constexpr Kinds order[] = {{vertex, vertex}, {vertex, edge}, {vertex, face}, {edge, vertex},
+                             {edge, edge},     {edge, face},   {face, vertex}, {face, edge}};
   json.key("proximity");
   json.begin_array();
   for (const ContactGroup& group : result.proximity_groups) {
     json.begin_object();
     write_objects(json, group.a, group.b);
     const auto is_usual = [&](const Kinds& kinds) {
+      if (kinds == Kinds{edge, face} || kinds == Kinds{face, edge}) return false;
       return listing == ProximityListing::features || kinds == Kinds{edge, edge} || kinds[0] == face ||
              kinds[1] == face;
     };

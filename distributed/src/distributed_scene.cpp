@@ -161,7 +161,7 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
         .add_options(question_.impact.impact)
         .add("element_kinds", question_.impact.kinds)
         .add("proximity_listing", question_.proximity_listing)
-        .add("depths", question_.depths);
+        .add("curves", question_.curves);
   });
   prepare(question_.has_penetration());
   result_ = {};

@@ -84,7 +84,8 @@ constexpr ContactKinds with_included(ContactKinds set) {
   return contains(set, ContactKinds::penetration) ? set | ContactKinds::intersection : set;
 }
 
-/// The pairs of elements that continuous contacts and proximity search.
+/// The pairs of elements that continuous contacts and proximity search. For proximity, `all` also has edges
+/// that cross faces.
 enum class ElementKinds : std::uint8_t {
   all,
   vertex_face,  ///< vertices with faces, edges and points
@@ -122,7 +123,8 @@ struct ObjectOptions {
   /// or an id for each vertex. Not together with `weld`.
   std::vector<std::uint32_t> same_vertex{};
   /// Edges and points of no triangle, for example of rods and particles, as vertex ids. They take part in
-  /// continuous contacts and proximity. Queries and other kinds of contacts read triangles alone.
+  /// continuous contacts, proximity, and distances of objects. Other queries and other kinds of contacts read
+  /// triangles alone: where a rod passes through a surface, proximity names the place.
   std::vector<std::array<std::uint32_t, 2>> edges{};
   std::vector<std::uint32_t> points{};
   /// The object never moves: it is not tested against other static objects, and moving it is an error.

@@ -275,8 +275,8 @@ class Scene {
               const CallLimits& limits = {}) const;
 
   /// The nearest features of two objects, as a pair of the listing of features, or nothing when one of them
-  /// has no finite triangle. Of several pairs at the same distance, the first one in the order of
-  /// `DetectResult::proximity_pairs`. When the surfaces intersect, the distance is 0, and the pair is the
+  /// has no finite triangle, edge or point. Of several pairs at the same distance, the first one in the order
+  /// of `DetectResult::proximity_pairs`. When the surfaces intersect, the distance is 0, and the pair is the
   /// first point of their first contact: then an edge can be paired with a face. `object_a` is the smaller
   /// object. An object inside another one has the distance of the surfaces. Triangles with a vertex that is
   /// not finite do not count. A distance that no double holds is infinite. Starts at the result of the last

@@ -48,6 +48,22 @@ class Lines(ProgramTest):
         self.assertEqual([row[:3] for row in group["ev"]], [[0, 1, 2]])
         self.assertEqual(frame["verify"]["differences"], [])
 
+    def test_a_rod_through_a_mesh(self):
+        self.write("floor.obj", FLOOR)
+        self.write("rod.obj", "v 1 -1 2\nv 1.5 2 2\nl 1 2\n")
+        (frame,) = self.detect("rod.obj", "floor.obj", "--contacts", "proximity", "--verify")["frames"]
+        (group,) = frame["proximity"]
+        self.assertEqual([key for key in group if group[key] != []], ["a", "b", "ef"])
+        self.assertEqual([row[:2] + row[3:] for row in group["ef"]], [[0, 1, 0]])
+        self.assertEqual(frame["proximity_verify"]["differences"], [])
+        for inputs in (("rod.obj", "floor.obj"), ("floor.obj", "rod.obj")):
+            done = self.run_here("query", "distance", *inputs, "--json", "-", "--verify")
+            self.assertEqual((done.status, done.error), (0, ""))
+            self.assertEqual(json.loads(done.out)["results"][0][:3], [0, 1, 0])
+        self.write("above.obj", "v 1 1 2\nv 1.5 2 2\nl 1 2\n")
+        done = self.run_here("query", "distance", "above.obj", "rod.obj", "floor.obj", "--json", "-", "--verify")
+        self.assertEqual([row[2] for row in json.loads(done.out)["results"]][1:], [1, 0])
+
     def test_particles_near_a_mesh(self):
         self.write("floor.obj", FLOOR)
         self.write("particles.obj", "v 1 0.125 2\nv -1 2 -1\nv 3 -0.25 -1\np 1 2\np 3\n")

@@ -36,6 +36,23 @@ class Proximity(ProgramTest):
         self.assertEqual(group["fv"], [[0, v, 0.25] for v in range(3)])
         self.assertIn([0, 1, 0, 1, 0.25], group["ee"])
 
+    def test_meshes_that_cut_through_each_other(self):
+        """Away from all edges of the plate: no vertex is on a face and no two edges meet."""
+        self.write("plate.obj", ([(-4.0, -4.0, 0.0), (8.0, -4.0, 0.0), (-4.0, 8.0, 0.0)], [(0, 1, 2)]))
+        self.write("needle.obj", ([(0.0, 0.0, -2.0), (0.25, 0.0, -2.0), (0.0, 0.25, 2.0)], [(0, 1, 2)]))
+        for listing in ("features", "elements"):
+            for margin in ("0", "0.01"):
+                near = ("--contacts", "proximity", "--margin", margin, "--proximity-listing", listing, "--verify")
+                (frame,) = self.detect("needle.obj", "plate.obj", *near)["frames"]
+                self.assertEqual(frame["proximity"][0]["ef"], [[0, 2, 0, 0], [1, 2, 0, 0]])
+                self.assertEqual(frame["proximity_verify"]["differences"], [])
+                (frame,) = self.detect("plate.obj", "needle.obj", *near)["frames"]
+                self.assertEqual(frame["proximity"][0]["fe"], [[0, 0, 2, 0], [0, 1, 2, 0]])
+                self.assertNotIn("ef", frame["proximity"][0])
+        done = self.run_here("detect", "needle.obj", "plate.obj", "--contacts", "proximity", "--fail-on-contact")
+        self.assertEqual(done.status, 1)
+        self.assertNotIn("Nothing is within", done.out)
+
     def test_one_mesh_is_near_itself(self):
         self.write("both.obj", joined(TRIANGLE, moved(TRIANGLE, 0, 0, 0.25)))
         for arguments in ((), ("--self",)):

@@ -222,7 +222,7 @@ constexpr GoldenHash golden_scene_hashes[] = {
     {"normals", normal_hash_of_all_families, 14020266159755522772u},
     {"continuous", continuous_hash_of_all_families, 2109742332807707606u},
     {"safe steps", safe_step_hash_of_all_families, 7812403333792642879u},
-    {"proximity", proximity_hash_of_all_families, 649647511004271498u},
+    {"proximity", proximity_hash_of_all_families, 15691034415588189283u},
     {"queries", query_hash_of_all_families, 16834821160368692095u},
     {"penetrations", penetration_hash_of_boxes, 7840600456338233871u},
 };

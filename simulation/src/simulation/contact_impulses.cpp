@@ -21,7 +21,12 @@ bool ContactImpulses::resolve(Scene& scene, std::span<const ProximityPair> near,
                               const PairFilter& only) {
   begin(objects);
   touches_.clear();
-  for (const ProximityPair& pair : near) touches_.push_back(touch_of(scene, pair));
+  for (const ProximityPair& pair : near) {
+    // An edge that crosses a face has no side to which it could be pushed.
+    const bool is_face = pair.kind_a == FeatureKind::face || pair.kind_b == FeatureKind::face;
+    const bool is_edge = pair.kind_a == FeatureKind::edge || pair.kind_b == FeatureKind::edge;
+    if (!(is_face && is_edge)) touches_.push_back(touch_of(scene, pair));
+  }
   for (std::uint32_t round = 0;; ++round) {
     const bool was_pushed = keep_apart();
     if (round > 0 && !was_pushed) return false;

@@ -43,8 +43,9 @@ class JobOutcomes {
     std::uint32_t last = 0;
     for (const ContactJob& job : jobs) {
       while (last < last_outcomes_.size() && last_outcomes_[last].job < job) ++last;
-      Outcome outcome{job, versions[job.a], versions[job.b], {}, none, 0, 0};
-      if (last < last_outcomes_.size() && last_outcomes_[last].is_of_same(outcome)) {
+      Outcome outcome{job, {}, none, 0, 0};
+      const bool was_tested = last < last_outcomes_.size() && last_outcomes_[last].job == job;
+      if (was_tested && is_unmoved(job.a, versions) && is_unmoved(job.b, versions)) {
         outcome.known = last;
         for (std::size_t list = 0; list < lists; ++list)
           outcome.ranges[list].count = last_outcomes_[last].ranges[list].count;
@@ -53,6 +54,7 @@ class JobOutcomes {
       }
       outcomes_.push_back(outcome);
     }
+    last_versions_.assign(versions.begin(), versions.end());
   }
   /// Indices of the jobs whose outcome is not known, ascending.
   std::span<const std::uint32_t> open_jobs() const { return open_jobs_; }
@@ -140,17 +142,17 @@ class JobOutcomes {
   static constexpr std::uint32_t none = ~std::uint32_t{0};
   struct Outcome {
     ContactJob job;
-    std::uint64_t version_a = 0, version_b = 0;
     Ranges ranges;
     std::uint32_t known = none;  // index into `last_outcomes_`
     std::uint32_t first_task = 0, task_count = 0;
-
-    bool is_of_same(const Outcome& other) const {
-      return job == other.job && version_a == other.version_a && version_b == other.version_b;
-    }
   };
 
+  bool is_unmoved(std::uint32_t slot, std::span<const std::uint64_t> versions) const {
+    return slot < last_versions_.size() && last_versions_[slot] == versions[slot];
+  }
+
   std::vector<Outcome> outcomes_, last_outcomes_;  // by job
+  std::vector<std::uint64_t> last_versions_;       // by slot
   std::vector<std::uint32_t> open_jobs_;
   std::vector<TaskOutcome> task_outcomes_;
   std::size_t reusable_ = 0;  // how many outcomes the next step may reuse

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "contact/distance/edge_face_crossing.hpp"
 #include "contact/distance/triangle_gap.hpp"
 #include "contact/intersection/neighbour_test.hpp"
 #include "core/error.hpp"
@@ -265,6 +266,13 @@ bool Inspection::are_near(const ContactJob& job, TrianglePair triangles) const {
   const auto is_in = [&](std::uint32_t vertex, const Triangle& triangle) {
     return job.a == job.b && std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
   };
+  bool used_exact = false;
+  const auto crosses = [&](std::size_t i, const TrianglePoints& of_edge, const Triangle& ids_of_edge,
+                           const TrianglePoints& face, const Triangle& ids_of_face) {
+    const std::size_t next = (i + 1) % 3;
+    if (is_in(ids_of_edge[i], ids_of_face) || is_in(ids_of_edge[next], ids_of_face)) return false;
+    return edge_crosses_face({of_edge[i], of_edge[next]}, face, used_exact);
+  };
   for (std::size_t i = 0; i < 3; ++i) {
     if (!is_in(ids_a[i], ids_b) && may_touch(corner(ids_a[i]), ids_b) &&
         point_triangle_distance(p[i], q, reach))
@@ -273,6 +281,12 @@ bool Inspection::are_near(const ContactJob& job, TrianglePair triangles) const {
         point_triangle_distance(q[i], p, reach))
       return true;
     const std::size_t i1 = (i + 1) % 3;
+    if (question().impact.kinds == ElementKinds::all && may_touch({ids_a[i], ids_a[i1], ids_a[i]}, ids_b) &&
+        crosses(i, p, ids_a, q, ids_b))
+      return true;
+    if (question().impact.kinds == ElementKinds::all && may_touch(ids_a, {ids_b[i], ids_b[i1], ids_b[i]}) &&
+        crosses(i, q, ids_b, p, ids_a))
+      return true;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t k1 = (k + 1) % 3;
       const Triangle edge{ids_b[k], ids_b[k1], ids_b[k]};

@@ -27,8 +27,10 @@ void MovingOverlapMasks(const NodePair* pairs, std::size_t count, const MovingVi
   // Here the boxes of a are placed, because there is one of them for each vector of b.
   PartOfStep part_a = part;
   part_a.offset = {-part.offset.x, -part.offset.y, -part.offset.z};
+  const bool at_rest = are_at_rest(a, b, part);
   for (std::size_t k = 0; k < count; ++k) {
-    const MovingBoxArrays boxes_a = child_boxes(a, pairs[k].a), boxes_b = child_boxes(b, pairs[k].b);
+    const MovingBoxArrays boxes_a = child_boxes(a, pairs[k].a, at_rest),
+                          boxes_b = child_boxes(b, pairs[k].b, at_rest);
     std::uint64_t mask = 0;
     for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
@@ -81,18 +83,19 @@ HWY_INLINE void set_boxes(const VertexCorners& corners, const Ids& ids, ElementR
 /// The boxes of a range of at most `leaf_block` elements. Those of object b are placed.
 template <class Ids>
 HWY_INLINE void set_block(const MovingView& view, const Ids& ids, ElementRange range, const PartOfStep& part,
-                          bool with_vertices, MovingBoxBlock& block) {
+                          bool with_vertices, bool at_rest, MovingBoxBlock& block) {
   for (std::uint32_t i = 0; with_vertices && i < range.size(); ++i) {
     for (int corner = 0; corner < Ids::corner_count; ++corner)
       block.vertices[corner][i] = static_cast<std::uint32_t>(ids.vertex(range.begin + i, corner));
   }
   set_boxes(view.start_corners, ids, range, block.start);
-  set_boxes(view.end_corners, ids, range, block.end);
+  if (!at_rest) set_boxes(view.end_corners, ids, range, block.end);
   if (part.separation > 0 || part.latest < 1 || !(part.offset == Vec3f{})) {
     const hn::CappedTag<float, 16> tag;
     for (int side = 0; side < 6; ++side) {
       for (std::size_t i = 0; i < range.size(); i += hn::Lanes(tag))
-        place_and_shorten(tag, block.start[side] + i, block.end[side] + i, side, part);
+        place_and_shorten(tag, block.start[side] + i, (at_rest ? block.start : block.end)[side] + i, side,
+                          part);
     }
   }
   if (view.inert == nullptr) return;
@@ -111,21 +114,22 @@ HWY_INLINE void set_block(const MovingView& view, const Ids& ids, ElementRange r
 constexpr std::uint32_t group = 16;
 
 /// Bits of a group of boxes of the block, from `first` on, that are not apart from `box`.
-HWY_INLINE std::uint64_t meeting_group(const MovingBox& box, const MovingBoxBlock& block, std::size_t first) {
+HWY_INLINE std::uint64_t meeting_group(const MovingBox& box, const MovingBoxBlock& block, bool at_rest,
+                                       std::size_t first) {
   const hn::CappedTag<float, group> tag;
   std::uint64_t bits = 0;
   for (std::size_t j = 0; j < group; j += hn::Lanes(tag))
-    bits |= meeting_bits(tag, box, arrays_of(block), first + j, 1) << j;
+    bits |= meeting_bits(tag, box, arrays_of(block, at_rest), first + j, 1) << j;
   return bits;
 }
 
 /// Bits of the elements of a block that are not apart from `box`. Not inlined, because compilers would take
 /// minutes.
-HWY_NOINLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBoxBlock& block,
+HWY_NOINLINE std::uint64_t meeting_elements(const MovingBox& box, const MovingBoxBlock& block, bool at_rest,
                                             std::uint32_t count) {
   std::uint64_t bits = 0;
   for (std::uint32_t first = 0; first < count; first += group)
-    bits |= meeting_group(box, block, first) << first;
+    bits |= meeting_group(box, block, at_rest, first) << first;
   return bits & ~std::uint64_t{0} >> (leaf_block - count);
 }
 
@@ -147,23 +151,30 @@ HWY_INLINE std::uint64_t neighbours_in_group(const MovingBoxBlock& ones, std::si
   return bits;
 }
 
+/// What a test of blocks needs besides them.
+struct BlockTest {
+  bool skips_neighbours = false, at_rest = false;
+  float shrinks_by = 0;  ///< on all sides of the boxes of one block
+};
+
 /// For each of `ones`, the bits of a group of `others` in `some_others`, from `first` on, that are not apart
 /// from it; without those that share a vertex with it if `skips_neighbours`. Returns bits of the ones that
 /// have some.
 template <int corners_of_one, int corners_of_other>
 HWY_NOINLINE std::uint64_t meeting_masks(const MovingBoxBlock& ones, std::uint64_t some_ones,
                                          const MovingBoxBlock& others, std::uint64_t some_others,
-                                         std::size_t first, bool skips_neighbours, std::uint64_t* masks) {
+                                         std::size_t first, const BlockTest& how, std::uint64_t* masks) {
   std::uint64_t found = 0;
   for (; some_ones != 0; some_ones &= some_ones - 1) {
     const auto one = static_cast<std::size_t>(std::countr_zero(some_ones));
     MovingBox box;
     for (std::size_t side = 0; side < 6; ++side) {
       box.start[side] = ones.start[side][one];
-      box.end[side] = ones.end[side][one];
+      if (!how.at_rest) box.end[side] = ones.end[side][one];
     }
-    std::uint64_t hits = meeting_group(box, others, first) & some_others;
-    if (skips_neighbours)
+    if (how.shrinks_by > 0) shrink(box, how.shrinks_by);
+    std::uint64_t hits = meeting_group(box, others, how.at_rest, first) & some_others;
+    if (how.skips_neighbours && hits != 0)
       hits &= ~neighbours_in_group<corners_of_one, corners_of_other>(ones, one, others, first);
     masks[one] = hits;
     found |= std::uint64_t{hits != 0} << one;
@@ -180,6 +191,7 @@ class ElementTests {
         b_(b),
         part_a_{0, part.latest, {}, part.kinds},
         part_b_(part),
+        at_rest_(are_at_rest(a, b, part)),
         same_object_(same_object),
         cache_(cache),
         batches_(batches) {
@@ -188,8 +200,11 @@ class ElementTests {
 
   void test(const LeafPair& leaves) {
     same_leaf_ = same_object_ && leaves.begin_a == leaves.begin_b;
-    box_a_ = moving_box(child_boxes(a_, leaves.leaf_a / node_width), leaves.leaf_a % node_width, part_a_);
-    box_b_ = moving_box(child_boxes(b_, leaves.leaf_b / node_width), leaves.leaf_b % node_width, part_b_);
+    reach_ = 0;
+    box_a_ = moving_box(child_boxes(a_, leaves.leaf_a / node_width, at_rest_), leaves.leaf_a % node_width,
+                        part_a_);
+    box_b_ = moving_box(child_boxes(b_, leaves.leaf_b / node_width, at_rest_), leaves.leaf_b % node_width,
+                        part_b_);
     const Elements<VerticesThemselves> vertices_a{
         {},
         &MovingBoxCache::Side::vertices,
@@ -215,11 +230,20 @@ class ElementTests {
       if (!same_leaf_) match<Kind::face_vertex>(faces_a, vertices_b);
     }
     if (part_b_.kinds != ElementKinds::vertex_face) match<Kind::edge_edge>(edges_a, edges_b);
+    if (part_b_.crossing_reach < 0) return;
+    reach_ = part_b_.crossing_reach;
+    shrink(box_b_, reach_);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (box_b_.start[axis] > box_a_.start[axis + 3] || box_b_.start[axis + 3] < box_a_.start[axis]) return;
+    }
+    shrink(box_a_, reach_);
+    match<Kind::edge_face>(edges_a, faces_b);
+    if (!same_leaf_) match<Kind::face_edge>(faces_a, edges_b);
   }
   std::uint64_t box_tests() const { return tests_; }
 
  private:
-  using Kind = ElementPairKind;
+  using Kind = CandidateKind;
 
   /// The elements of one kind that a leaf owns.
   template <class Ids>
@@ -239,7 +263,7 @@ class ElementTests {
     const std::size_t place = block.begin * 0x9e3779b1u >> 28;
     MovingBoxCache::Kind& kind = side.*elements.cache;
     if (std::exchange(kind.first_elements[place], block.begin) != block.begin)
-      set_block(view, elements.ids, block, part, same_object_, kind.blocks[place]);
+      set_block(view, elements.ids, block, part, same_object_, at_rest_, kind.blocks[place]);
     return kind.blocks[place];
   }
 
@@ -272,7 +296,7 @@ class ElementTests {
   std::uint64_t near_leaf(const MovingBox& leaf, const MovingBoxBlock& boxes, ElementRange range) {
     if (same_leaf_) return ~std::uint64_t{0} >> (leaf_block - range.size());
     tests_ += range.size();
-    return meeting_elements(leaf, boxes, range.size());
+    return meeting_elements(leaf, boxes, at_rest_, range.size());
   }
 
   /// Tests each of `ones`, elements of a, or of b with `one_is_b`, against the others; in a block against
@@ -281,16 +305,19 @@ class ElementTests {
   void match_blocks(std::uint32_t first_one, const MovingBoxBlock& ones, std::uint64_t some_ones,
                     std::uint32_t first_other, const MovingBoxBlock& others, std::uint64_t some_others,
                     bool with_later) {
-    constexpr int corners_a = kind == Kind::vertex_face ? 1 : kind == Kind::edge_edge ? 2 : 3;
-    constexpr int corners_b = 4 - corners_a;
+    constexpr int corners_a = kind == Kind::vertex_face                            ? 1
+                              : kind == Kind::edge_edge || kind == Kind::edge_face ? 2
+                                                                                   : 3;
+    constexpr bool may_cross = kind == Kind::edge_face || kind == Kind::face_edge;
+    constexpr int corners_b = (may_cross ? 5 : 4) - corners_a;
+    const BlockTest how{same_object_, at_rest_, reach_};
     std::array<std::uint64_t, leaf_block> masks;
     for (std::uint32_t i = 0; i < leaf_block; i += group) {
       const std::uint64_t some = some_others >> i & ((std::uint64_t{1} << group) - 1);
       if (some == 0) continue;
       tests_ += static_cast<std::uint64_t>(std::popcount(some_ones)) * group;
       std::uint64_t found = meeting_masks < one_is_b ? corners_b : corners_a,
-                    one_is_b ? corners_a
-                             : corners_b > (ones, some_ones, others, some, i, same_object_, masks.data());
+                    one_is_b ? corners_a : corners_b > (ones, some_ones, others, some, i, how, masks.data());
       for (; found != 0; found &= found - 1) {
         const auto one = static_cast<std::uint32_t>(std::countr_zero(found));
         std::uint64_t hits = masks[one];
@@ -304,9 +331,9 @@ class ElementTests {
   /// `hits`, counted from `first`.
   template <Kind kind, bool of_b>
   void add(std::uint32_t one, std::uint32_t first, std::uint64_t hits) {
-    // In pairs within one object the vertex comes first.
-    const bool turned = same_object_ && kind == Kind::face_vertex;
-    const Kind reported = turned ? Kind::vertex_face : kind;
+    // In pairs within one object the vertex or the edge comes before the face.
+    const bool turned = same_object_ && (kind == Kind::face_vertex || kind == Kind::face_edge);
+    const Kind reported = !turned ? kind : kind == Kind::face_vertex ? Kind::vertex_face : Kind::edge_face;
     ElementPair* const pairs = batches_.room_for(reported, group);
     std::size_t count = 0;
     for (; hits != 0; hits &= hits - 1) {
@@ -319,10 +346,11 @@ class ElementTests {
   const MovingView& a_;
   const MovingView& b_;
   PartOfStep part_a_, part_b_;
-  bool same_object_;
+  bool at_rest_, same_object_;
   MovingBoxCache& cache_;
   ElementPairBatches& batches_;
   bool same_leaf_ = false;
+  float reach_ = 0;  ///< by which the boxes are nearer than those that overlap
   MovingBox box_a_, box_b_;
   std::uint64_t tests_ = 0;
 };

@@ -18,11 +18,14 @@ struct ElementPair {
   constexpr auto operator<=>(const ElementPair&) const = default;
 };
 
+/// The kinds of candidates: those of `ElementPairKind`, and edges and faces that may cross.
+enum class CandidateKind : std::uint8_t { vertex_face, face_vertex, edge_edge, edge_face, face_edge };
+
 /// Collects candidates, one batch for each kind, and passes each full batch to a sink.
 class ElementPairBatches {
  public:
   static constexpr std::size_t capacity = 1024;
-  using Sink = void (*)(void* context, ElementPairKind kind, std::span<const ElementPair> pairs);
+  using Sink = void (*)(void* context, CandidateKind kind, std::span<const ElementPair> pairs);
 
   /// The receiver of the batches; borrowed until `flush`. Drops pairs that an exception has left behind.
   void set_sink(Sink sink, void* context) {
@@ -32,18 +35,18 @@ class ElementPairBatches {
   }
   /// Space for `count` more pairs of the kind; `count` is far below the capacity. The caller writes pairs
   /// there and passes their number to `added`.
-  ElementPair* room_for(ElementPairKind kind, std::size_t count) {
+  ElementPair* room_for(CandidateKind kind, std::size_t count) {
     Batch& batch = batches_[static_cast<std::size_t>(kind)];
     if (batch.count + count > capacity) hand_over(kind);
     return batch.pairs.data() + batch.count;
   }
-  void added(ElementPairKind kind, std::size_t count) {
+  void added(CandidateKind kind, std::size_t count) {
     batches_[static_cast<std::size_t>(kind)].count += count;
   }
   /// Passes on all remaining pairs.
   void flush() {
     for (std::size_t kind = 0; kind < batches_.size(); ++kind) {
-      if (batches_[kind].count > 0) hand_over(static_cast<ElementPairKind>(kind));
+      if (batches_[kind].count > 0) hand_over(static_cast<CandidateKind>(kind));
     }
   }
 
@@ -52,14 +55,14 @@ class ElementPairBatches {
     std::size_t count = 0;
     std::array<ElementPair, capacity> pairs;
   };
-  void hand_over(ElementPairKind kind) {
+  void hand_over(CandidateKind kind) {
     Batch& batch = batches_[static_cast<std::size_t>(kind)];
     const std::size_t count = batch.count;
     batch.count = 0;
     sink_(context_, kind, {batch.pairs.data(), count});
   }
 
-  std::array<Batch, 3> batches_;
+  std::array<Batch, 5> batches_;
   Sink sink_ = nullptr;
   void* context_ = nullptr;
 };
@@ -72,6 +75,9 @@ struct PartOfStep {
   float latest = 1;
   Vec3f offset{};
   ElementKinds kinds = ElementKinds::all;  ///< pairs of elements that are tested
+  /// For objects at rest: also tests edges against faces, and their boxes come this much nearer than the
+  /// separation before they overlap. Negative: does not.
+  float crossing_reach = -1;
 };
 
 /// Boxes of up to `leaf_block` elements of one kind at both ends of (a part of) a step: min x, y, z, max x,
@@ -110,8 +116,9 @@ void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, 
                           const PartOfStep& part, std::uint64_t* masks);
 
 /// Adds all pairs of elements of the leaf pairs that may come within the separation of each other, by their
-/// boxes at both ends of the step. With `same_object`, skips pairs that share a vertex, adds each pair once,
-/// and faces are always b. Never misses a pair. Returns the number of box tests.
+/// boxes at both ends of the step; with a `crossing_reach` also the edges and faces whose boxes overlap. With
+/// `same_object`, skips pairs that share a vertex, adds each pair once, and faces are always b. Never misses
+/// a pair. Returns the number of box tests.
 ///
 /// Only elements near the box of the other leaf are tested: those of the side that has fewer, one at a time,
 /// against vectors of elements of the other side.

@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -29,7 +30,7 @@ struct MovingBox {
 /// Six arrays of boxes at each end of the step, `stride` floats apart.
 struct MovingBoxArrays {
   const float* start;
-  const float* end;
+  const float* end;  ///< null where both objects are at rest
   std::size_t stride;
 };
 
@@ -86,7 +87,7 @@ HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& boxes, std::size_t i, c
   MovingBox box;
   for (std::size_t side = 0; side < 6; ++side) {
     box.start[side] = boxes.start[side * boxes.stride + i];
-    box.end[side] = boxes.end[side * boxes.stride + i];
+    box.end[side] = (boxes.end != nullptr ? boxes.end : boxes.start)[side * boxes.stride + i];
   }
   if (box.start[0] > greatest_bound) return box;
   for (int side = 0; side < 6; ++side)
@@ -94,12 +95,28 @@ HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& boxes, std::size_t i, c
   return box;
 }
 
-HWY_INLINE MovingBoxArrays child_boxes(const MovingView& view, std::uint32_t node) {
-  return {view.start[node].min_x, view.end[node].min_x, node_width};
+/// Whether both objects are at rest, so that the ends of the step are the same.
+HWY_INLINE bool are_at_rest(const MovingView& a, const MovingView& b, const PartOfStep& part) {
+  return a.start == a.end && b.start == b.end && !(part.latest < 1);
 }
 
-HWY_INLINE MovingBoxArrays arrays_of(const MovingBoxBlock& block) {
-  return {block.start[0], block.end[0], leaf_block};
+HWY_INLINE MovingBoxArrays child_boxes(const MovingView& view, std::uint32_t node, bool at_rest) {
+  return {view.start[node].min_x, at_rest ? nullptr : view.end[node].min_x, node_width};
+}
+
+HWY_INLINE MovingBoxArrays arrays_of(const MovingBoxBlock& block, bool at_rest) {
+  return {block.start[0], at_rest ? nullptr : block.end[0], leaf_block};
+}
+
+/// Shrinks a box at rest by `reach` on all sides. Where the other box, or this one, has grown by at least
+/// that, they still overlap if they did before: sums are rounded monotonically, and the limit of the range
+/// stands for all that is beyond.
+HWY_INLINE void shrink(MovingBox& box, float reach) {
+  for (std::size_t side = 0; side < 6; ++side) {
+    float& bound = box.start[side];
+    if (!(bound > -greatest_bound && bound < greatest_bound)) continue;
+    bound = std::clamp(bound + (side < 3 ? reach : -reach), -greatest_bound, greatest_bound);
+  }
 }
 
 /// Whether a vector of boxes, from `first` on, is apart from `box` along the axis: on the same side at both
@@ -108,9 +125,13 @@ template <class Tag>
 HWY_INLINE hn::Mask<Tag> apart_along(Tag tag, const MovingBox& box, const MovingBoxArrays& arrays,
                                      std::size_t first, std::size_t axis, float latest) {
   const float* const start = arrays.start + axis * arrays.stride + first;
-  const float* const end = arrays.end + axis * arrays.stride + first;
   const std::size_t to_max = 3 * arrays.stride;
   const auto start_min = hn::LoadU(tag, start), start_max = hn::LoadU(tag, start + to_max);
+  if (arrays.end == nullptr) {
+    return hn::Or(hn::Gt(start_min, hn::Set(tag, box.start[axis + 3])),
+                  hn::Lt(start_max, hn::Set(tag, box.start[axis])));
+  }
+  const float* const end = arrays.end + axis * arrays.stride + first;
   auto end_min = hn::LoadU(tag, end), end_max = hn::LoadU(tag, end + to_max);
   if (latest < 1) {
     end_min = between(tag, start_min, end_min, latest, -1.0f);

@@ -62,13 +62,17 @@ struct ObjectPairView {
   /// approach.
   bool any_parts = false;
   ElementKinds kinds = ElementKinds::all;  ///< for moving objects
+  /// Not negative, for objects at rest: edges and faces whose boxes overlap are candidates, too. At most the
+  /// separation without the slop of the placement.
+  float crossing_reach = -1;
 
   /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.
   PartOfStep part_of_step() const {
     constexpr float least = 0x1p-100f, most = 0.125f;
     const float latest_now = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
     const float until = latest_now < most ? std::max(latest_now, least) : 1;
-    return {growth > 0 ? round_up(separation + growth * until) : separation, until, placement.offset, kinds};
+    return {growth > 0 ? round_up(separation + growth * until) : separation, until, placement.offset, kinds,
+            crossing_reach};
   }
   /// The same for two children, with the separation that `kept_share` asks for.
   PartOfStep part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b, int child_b) const;
@@ -140,13 +144,21 @@ class Traversal {
   /// and the kind `face_vertex` do not occur. Each pair occurs once among all roots of a `refine`.
   template <class Sink>
   void find_element_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats, Sink&& sink) {
-    auto count_and_sink = [&](ElementPairKind kind, std::span<const ElementPair> pairs) {
-      (kind == ElementPairKind::edge_edge ? stats.edge_edge_candidates : stats.vertex_face_candidates) +=
+    find_element_pairs(pair, root, stats, sink, [](bool, std::span<const ElementPair>) {});
+  }
+  /// With a `crossing_reach`, also calls `crossing_sink(bool edge_is_of_a, std::span<const ElementPair>)`
+  /// with the edges and faces whose boxes overlap; within one object, the edge is always a.
+  template <class Sink, class CrossingSink>
+  void find_element_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats, Sink&& sink,
+                          CrossingSink&& crossing_sink) {
+    auto count_and_sink = [&](CandidateKind kind, std::span<const ElementPair> pairs) {
+      if (kind > CandidateKind::edge_edge) return crossing_sink(kind == CandidateKind::edge_face, pairs);
+      (kind == CandidateKind::edge_edge ? stats.edge_edge_candidates : stats.vertex_face_candidates) +=
           pairs.size();
-      sink(kind, pairs);
+      sink(static_cast<ElementPairKind>(kind), pairs);
     };
     element_pairs_.set_sink(
-        [](void* context, ElementPairKind kind, std::span<const ElementPair> pairs) {
+        [](void* context, CandidateKind kind, std::span<const ElementPair> pairs) {
           (*static_cast<decltype(count_and_sink)*>(context))(kind, pairs);
         },
         &count_and_sink);

@@ -55,7 +55,9 @@ void Events::find_manifolds(World& world, const DetectResult& found) {
     if (world.at(slot) == nullptr) continue;
     WorldObject& object = world[slot];
     manifold_objects_.back() = {
-        {&object.octree(), nullptr, &object.placement().end(), object.placement().translation()}, &object};
+        {&object.octree(), nullptr, &object.placement().end(), object.placement().translation(),
+         object.placement().is_mirrored(), object.inward_triangles()},
+        &object};
   }
   for (const ContactGroup& group : found.proximity_groups) {
     for (const ObjectId id : {group.a, group.b})

@@ -65,6 +65,35 @@ double distance_to_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   return std::sqrt(dot(rest, rest));
 }
 
+/// Whether both ends of an edge are on one side of a face's plane, by far more than rounding.
+bool clearly_on_one_side(const std::array<Vec3d, 2>& edge, const std::array<Vec3d, 3>& face) {
+  const Vec3d u = face[1] - face[0], v = face[2] - face[0], p = edge[0] - face[0], q = edge[1] - face[0];
+  const double least = 1e-12 * largest_magnitude(u) * largest_magnitude(v) *
+                           std::max(largest_magnitude(p), largest_magnitude(q)) +
+                       1e-290;
+  const double first = dot(cross(u, v), p), last = dot(cross(u, v), q);
+  return (first > least && last > least) || (first < -least && last < -least);
+}
+
+/// Appends the edges of a, or of b with `swaps`, that cross faces of the other object.
+void decide_crossings(const PlainMovingObject& a, const std::vector<BoxedElement>& edges,
+                      const PlainMovingObject& b, const std::vector<BoxedElement>& faces, bool swaps,
+                      bool same_object, const Parallel& parallel, std::vector<NearElements>& near) {
+  const auto decide = [&](const BoxedElement& e, const BoxedElement& f) -> std::optional<NearElements> {
+    if (f.kind != FeatureKind::face || !may_touch_by_groups(a, e, b, f)) return {};
+    const std::array edge{a.end[e.vertices[0]], a.end[e.vertices[1]]};
+    const std::array face{b.end[f.vertices[0]], b.end[f.vertices[1]], b.end[f.vertices[2]]};
+    if (clearly_on_one_side(edge, face) || !cross_by_algebra(edge, face)) return {};
+    NearElements found{e.kind, f.kind, e.name, f.name, {e.kind, 0}, {f.kind, 0}, Rational(0)};
+    if (!swaps) return found;
+    std::swap(found.kind_a, found.kind_b);
+    std::swap(found.element_a, found.element_b);
+    std::swap(found.on_a, found.on_b);
+    return found;
+  };
+  decide_all(edges, Sweep(faces), same_object, false, 0, parallel, decide, near);
+}
+
 auto place_of(const NearElements& near) {
   return std::tie(near.kind_a, near.kind_b, near.element_a, near.element_b);
 }
@@ -150,6 +179,10 @@ BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, co
       if (!same_object || in_order) return decide(SortedElement(a, p), SortedElement(b, q), false);
       return decide(SortedElement(b, q), SortedElement(a, p), false);
     });
+  }
+  if (kinds == ElementKinds::all) {
+    decide_crossings(a, of_a.edges, b, of_b.faces, false, same_object, parallel, result.near);
+    if (!same_object) decide_crossings(b, of_b.edges, a, of_a.faces, true, false, parallel, result.near);
   }
   std::sort(result.near.begin(), result.near.end(),
             [](const NearElements& p, const NearElements& q) { return place_of(p) < place_of(q); });

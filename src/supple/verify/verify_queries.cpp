@@ -285,7 +285,12 @@ std::vector<WrongAnswer> QueryVerifier::inside(std::span<const Vec3d> points,
 
 std::optional<WrongAnswer> QueryVerifier::wrong_distance(const ObjectPair& pair, double max_distance,
                                                          const ProximityPair* found) const {
-  const PlainObject a = object_of_queries(world_[pair.a.index]), b = object_of_queries(world_[pair.b.index]);
+  const auto with_extra_elements = [&](ObjectId id) {
+    PlainObject plain = object_of_queries(world_[id.index]);
+    plain.triangles = plain_moving_object(world_[id.index]).triangles;
+    return plain;
+  };
+  const PlainObject a = with_extra_elements(pair.a), b = with_extra_elements(pair.b);
   std::optional<double> guess;
   if (found != nullptr) guess = found->distance;
   const std::optional<ExactPair> truth =

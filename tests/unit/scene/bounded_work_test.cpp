@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -93,6 +94,54 @@ TEST(BoundedWork, OfADistanceIsThatOfNearObjects) {
       EXPECT_LT(work.elements, most) << ratio;
     }
   }
+}
+
+/// Triangles with vertices of their own at the same three places.
+TriangleMesh equal_triangles(std::uint32_t count, const std::array<Vec3d, 3>& corners) {
+  TriangleMesh mesh;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return mesh;
+}
+
+/// One above the other, so that their corners are nearest.
+TEST(BoundedWork, OfADistanceOfEqualTrianglesIsThatOfOne) {
+  const std::array<Vec3d, 3> corners{Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}};
+  for (const bool are_points : {false, true}) {
+    TriangleMesh below = equal_triangles(3000, are_points ? std::array<Vec3d, 3>{} : corners),
+                 above = moved(below, {0, 0, 2});
+    const Work work = work_of_distance(below, above);
+    EXPECT_LT(work.triangles, 300u);
+    EXPECT_LT(work.elements, 300u);
+  }
+}
+
+/// A fan of needles whose ends are on a circle, as far as doubles can say, and equal needles at its centre:
+/// each needle of the fan is decided once, not once for each of the others.
+TEST(BoundedWork, OfADistanceOfAFanAndEqualNeedlesIsThatOfTheFan) {
+  constexpr std::uint32_t count = 500;
+  TriangleMesh fan;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double turns = 1.0 * i / count, x = cos_turns(turns), y = sin_turns(turns);
+    fan.positions.insert(fan.positions.end(), {{x, y, 0}, {2 * x, 2 * y, 1e-3}, {2 * x, 2 * y, -1e-3}});
+    fan.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const TriangleMesh needles =
+      equal_triangles(count, {Vec3d{0, 0, 0}, Vec3d{1e-3, 0, -1}, Vec3d{-1e-3, 0, -1}});
+  const Work work = work_of_distance(fan, needles);
+  ASSERT_TRUE(work.nearest);
+  EXPECT_NEAR(work.nearest->distance, 1, 1e-6);
+  EXPECT_LT(work.elements, 60 * count);
+}
+
+/// All triangles of a sphere are about as far from a tiny one at its centre.
+TEST(BoundedWork, OfADistanceOfATinySphereInASphereIsNotTheirProduct) {
+  const TriangleMesh ball = make_icosphere(8), tiny = scaled(ball, 1e-9);
+  const Work work = work_of_distance(ball, tiny);
+  ASSERT_TRUE(work.nearest);
+  EXPECT_LT(work.triangles, 20 * ball.triangles.size());
 }
 
 TEST(BoundedWork, OfADistanceDoesNotGrowWithTheCoordinates) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -174,6 +176,57 @@ TEST(Distance, OfLatticesEqualsExactBruteForce) {
     }
     expect_nearest(plain_object(scene, ids[0], meshes[0]), plain_object(scene, ids[1], meshes[1]),
                    scene.distance(ids[0], ids[1]));
+  }
+}
+
+/// The answer is that of brute force in the first call, in the second, which starts from the first, and after
+/// another place of the objects: it depends on no guess, no octree and no order of visits. With coordinates
+/// that floats do not hold, no box says anything.
+TEST(Distance, DependsOnNoHistoryAndOnNoOctree) {
+#ifdef NDEBUG
+  constexpr std::uint64_t seeds = 5;
+#else
+  constexpr std::uint64_t seeds = 2;
+#endif
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    for (const int exponent : {0, -600, 126, 130, 500}) {
+      SCOPED_TRACE(std::to_string(seed) + " 2^" + std::to_string(exponent));
+      RandomNumbers random(seed);
+      std::vector<TriangleMesh> meshes(2);
+      for (std::size_t i = 0; i < 2; ++i) {
+        for (int v = 0; v < 16; ++v) {
+          Vec3d p{0.0 + random.between(0, 3), 0.0 + random.between(0, 3),
+                  random.between(0, 1) + 4.0 * static_cast<double>(i)};
+          if (random.below(12) == 0) p.x = std::numeric_limits<double>::infinity();
+          for (int axis = 0; axis < 3; ++axis) p[axis] = std::ldexp(p[axis], exponent);
+          meshes[i].positions.push_back(p);
+        }
+        for (int t = 0; t < 24; ++t)
+          meshes[i].triangles.push_back({random.below(16), random.below(16), random.below(16)});
+      }
+      std::optional<ProximityPair> first;
+      for (const std::uint32_t leaf_size : {1u, 2u, 5u, 64u}) {
+        Scene scene({.threads = 1});
+        std::vector<ObjectId> ids;
+        for (const TriangleMesh& mesh : meshes)
+          ids.push_back(scene.add(mesh, {.octree = {.leaf_size = leaf_size}}));
+        const auto found = scene.distance(ids[0], ids[1]);
+        if (leaf_size == 1) {
+          first = found;
+          EXPECT_TRUE(scene.verify_distance(ids[0], ids[1], found).empty());
+        }
+        EXPECT_EQ(found, first) << leaf_size;
+        EXPECT_EQ(scene.distance(ids[0], ids[1]), first) << leaf_size;
+        for (int other = 0; other < 2; ++other) {
+          std::vector<Vec3d> elsewhere = meshes[1].positions;
+          for (Vec3d& p : elsewhere) p = p + std::ldexp(1, exponent) * random.vector(4);
+          scene.set_positions(ids[1], elsewhere);
+          scene.distance(ids[0], ids[1]);
+          scene.set_positions(ids[1], meshes[1].positions);
+          EXPECT_EQ(scene.distance(ids[0], ids[1]), first) << leaf_size;
+        }
+      }
+    }
   }
 }
 

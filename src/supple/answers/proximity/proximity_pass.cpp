@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <span>
 #include <utility>
 
+#include "contact/distance/edge_face_crossing.hpp"
+#include "core/float_rounding.hpp"
 #include "core/sort_once.hpp"
 #include "core/timer.hpp"
 
@@ -12,7 +15,7 @@ namespace supple {
 namespace {
 
 constexpr std::size_t block_size = PointsBlock::capacity;
-constexpr std::size_t least_merge = 65536;  // candidates, 6 MB
+constexpr std::size_t least_merge = 65536;  // candidates, 6 MB; fewer with a limit
 constexpr std::uint32_t no_job = ~std::uint32_t{0};
 
 template <std::size_t count>
@@ -78,8 +81,9 @@ std::array<std::uint8_t, 4> points_of_features(const ClosestFeatures& features) 
 void ProximityWorker::start() {
   runs.clear();
   run_first = 0;
-  merge_at = least_merge;
+  merge_at = 0;
   is_full = false;
+  decisions.clear();
   FoundPair none;
   none.job = no_job;
   recent.fill(none);
@@ -90,6 +94,8 @@ bool ProximityPass::run(const PassInput& input, std::span<const MovingObject> ob
   begin(input.jobs, objects, input.stop);
   const bool is_same_search = std::exchange(search_, search) == search;
   max_pairs_ = input.max_contacts;
+  constexpr std::uint64_t few = 1024;
+  least_merge_ = max_pairs_ < least_merge / 4 ? static_cast<std::size_t>(2 * max_pairs_ + few) : least_merge;
   // Two workers may find the same pair, so `limit_` cannot count them; each worker has its own limit.
   if (!run_open_jobs(input, is_same_search, ContactLimit::unlimited, stats)) return false;
   for (Worker& worker : workers_) worker.stats = {};
@@ -114,6 +120,8 @@ ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
   const double reach = reach_of_margins(a.margin, b.margin);
   ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, reach) : moving_pair_of(a.view, b.view, reach);
   pair.kinds = search_.kinds;
+  if (search_.kinds == ElementKinds::all)
+    pair.crossing_reach = round_down(std::min(reach, double{std::numeric_limits<float>::max()}));
   return pair;
 }
 
@@ -121,12 +129,19 @@ void ProximityPass::run_task(std::size_t task, Worker& worker) {
   const std::uint32_t job = tasks_.tasks()[task].job;
   outcomes_.of_task(task) = {};  // `sort_found` counts the pairs
   if (worker.is_full && worker.last.job < job) return;
-  worker.traversal.find_element_pairs(view_of_job(job), tasks_.tasks()[task].root, worker.stats.traversal,
-                                      [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
-                                        Timer timer;
-                                        test_candidates(job, kind, candidates, worker);
-                                        worker.stats.exact_seconds += timer.lap();
-                                      });
+  worker.traversal.find_element_pairs(
+      view_of_job(job), tasks_.tasks()[task].root, worker.stats.traversal,
+      [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
+        Timer timer;
+        test_candidates(job, kind, candidates, worker);
+        worker.stats.exact_seconds += timer.lap();
+      },
+      [&](bool edge_is_of_a, std::span<const ElementPair> candidates) {
+        Timer timer;
+        test_crossings(job, edge_is_of_a ? CandidateKind::edge_face : CandidateKind::face_edge, candidates,
+                       worker);
+        worker.stats.exact_seconds += timer.lap();
+      });
   const auto end = static_cast<std::uint32_t>(worker.found.size());
   if (worker.run_first < end) worker.runs.push_back({job, worker.run_first, end});
   worker.run_first = end;
@@ -165,9 +180,17 @@ void ProximityPass::add(std::uint32_t job, ElementPairKind kind, ElementPair can
   if (code == FeatureCode::unknown || is_extra) {
     const auto [first_points, second_points] = with_points(job, kind, elements);
     const double reach = reach_of_margins(objects_[jobs_[job].a].margin, objects_[jobs_[job].b].margin);
-    bool used_exact = false;
-    features = closest_features_within(points_of(first_points, second_points), reach, used_exact);
-    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+    const ElementPoints points = points_of(first_points, second_points);
+    if (std::exchange(worker.job_of_decisions, job) != job) worker.decisions.clear();
+    ProximityWorker::Decision decision;
+    if (const auto* const known = worker.decisions.find(points)) {
+      decision = *known;
+    } else {
+      decision.features = closest_features_within(points, reach, decision.used_exact);
+      worker.decisions.store(points, decision);
+    }
+    worker.stats.exact_fallbacks += decision.used_exact ? 1 : 0;
+    features = decision.features;
     if (!features) return;
   } else {
     std::array<std::uint8_t, 4> places{};
@@ -177,9 +200,41 @@ void ProximityPass::add(std::uint32_t job, ElementPairKind kind, ElementPair can
           static_cast<std::uint8_t>(first.count + i);
     features = renumbered(features_of_code(code, are_edges), places);
   }
-  keep({job, name_of_pair(first, second, *features, order_of(job, kind), search_.listing), kind, *features,
-        candidate},
+  const auto candidate_kind = static_cast<CandidateKind>(kind);
+  keep({job, name_of_pair(first, second, *features, order_of(job, candidate_kind), search_.listing),
+        candidate_kind, *features, candidate},
        worker);
+}
+
+ProximityPass::Crossing ProximityPass::crossing_of(std::uint32_t job, CandidateKind kind,
+                                                   ElementPair candidate) const {
+  const MovingObject &a = objects_[jobs_[job].a], &b = objects_[jobs_[job].b];
+  if (kind == CandidateKind::edge_face)
+    return {a, b, a.view.moving.edge_ids[candidate.a], b.view.moving.face_ids[candidate.b],
+            b.triangle_ids[candidate.b]};
+  return {b, a, b.view.moving.edge_ids[candidate.b], a.view.moving.face_ids[candidate.a],
+          a.triangle_ids[candidate.a]};
+}
+
+void ProximityPass::test_crossings(std::uint32_t job, CandidateKind kind,
+                                   std::span<const ElementPair> candidates, Worker& worker) {
+  for (const ElementPair& candidate : candidates) {
+    const Crossing crossing = crossing_of(job, kind, candidate);
+    const auto& [of_edge, of_face, edge, face, triangle] = crossing;
+    if (triangle >= of_face.face_count) continue;  // an edge or a point of no triangle
+    const auto position = [](const MovingObject& object, std::uint32_t vertex) {
+      return placed((*object.end)[vertex], object);
+    };
+    bool used_exact = false;
+    const bool crosses = edge_crosses_face(
+        {position(of_edge, edge[0]), position(of_edge, edge[1])},
+        {position(of_face, face[0]), position(of_face, face[1]), position(of_face, face[2])}, used_exact);
+    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+    if (!crosses) continue;
+    const auto [first, second] = with_points(crossing);
+    if (may_touch_by_groups(of_edge.groups, std::span(first.ids).first(2), of_face.groups, second.ids))
+      keep({job, name_of_crossing(first, second, order_of(job, kind)), kind, {}, candidate}, worker);
+  }
 }
 
 /// Adds the candidate, unless it is one of the recent ones again or comes after all pairs of the result.
@@ -191,7 +246,7 @@ void ProximityPass::keep(const FoundPair& found, Worker& worker) const {
   if (recent == found) return;
   recent = found;
   worker.found.push_back(found);
-  if (worker.found.size() >= worker.merge_at) merge(worker);
+  if (worker.found.size() >= std::max(worker.merge_at, least_merge_)) merge(worker);
 }
 
 /// Keeps one candidate of each name, of the first `max_pairs_` names and one more, which shows that there are
@@ -210,12 +265,13 @@ void ProximityPass::merge(Worker& worker) const {
     worker.runs.back().end = i + 1;
   }
   worker.run_first = static_cast<std::uint32_t>(found.size());
-  worker.merge_at = std::max(least_merge, 2 * found.size());
+  worker.merge_at = 2 * found.size();
 }
 
-PairOrder ProximityPass::order_of(std::uint32_t job, ElementPairKind kind) const {
+PairOrder ProximityPass::order_of(std::uint32_t job, CandidateKind kind) const {
   if (jobs_[job].a == jobs_[job].b) return PairOrder::by_names;
-  return kind == ElementPairKind::face_vertex ? PairOrder::swapped : PairOrder::given;
+  const bool is_swapped = kind == CandidateKind::face_vertex || kind == CandidateKind::face_edge;
+  return is_swapped ? PairOrder::swapped : PairOrder::given;
 }
 
 ProximityPass::Elements ProximityPass::elements_of(std::uint32_t job, ElementPairKind kind,
@@ -256,18 +312,24 @@ std::array<PairElement, 2> ProximityPass::with_points(std::uint32_t job, Element
           with_points_of(*objects[3], elements.second, vertices + elements.first.count)};
 }
 
-/// Computes the pairs of all open jobs.
+std::array<PairElement, 2> ProximityPass::with_points(const Crossing& crossing) {
+  const auto& [of_edge, of_face, edge, face, triangle] = crossing;
+  return {with_points_of(of_edge, element_of(of_edge, std::span(edge), 0), edge.data()),
+          with_points_of(of_face, element_of(of_face, std::span(face), triangle), face.data())};
+}
+
+/// Computes the pairs of all jobs that found some.
 void ProximityPass::compute_found(const Parallel& parallel) {
   blocks_.clear();
-  for (std::uint32_t open = 0; open < outcomes_.open_jobs().size(); ++open) {
-    for (std::size_t first = 0; first < sorted_[open].size(); first += block_size)
-      blocks_.push_back({open, static_cast<std::uint32_t>(first)});
+  for (std::uint32_t i = 0; i < found_jobs_.size(); ++i) {
+    for (std::size_t first = 0; first < sorted_[i].size(); first += block_size)
+      blocks_.push_back({i, static_cast<std::uint32_t>(first)});
   }
   constexpr std::size_t grain = 8;
   parallel.for_ranges(blocks_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    for (const auto& [open, first] : std::span(blocks_).subspan(begin, end - begin)) {
-      const std::uint32_t job = outcomes_.open_jobs()[open];
-      const auto rest = std::span<const FoundPair>(sorted_[open]).subspan(first);
+    for (const auto& [i, first] : std::span(blocks_).subspan(begin, end - begin)) {
+      const std::uint32_t job = found_jobs_[i];
+      const auto rest = std::span<const FoundPair>(sorted_[i]).subspan(first);
       compute_pairs(job, rest.first(std::min(block_size, rest.size())), workers_[w],
                     records_.data() + outcomes_.ranges(job)[0].first + first);
     }
@@ -278,14 +340,23 @@ void ProximityPass::compute_found(const Parallel& parallel) {
 void ProximityPass::compute_pairs(std::uint32_t job, std::span<const FoundPair> found, Worker& worker,
                                   ProximityPair* pairs) {
   const ObjectPair objects{objects_[jobs_[job].a].id, objects_[jobs_[job].b].id};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!found[i].crosses()) continue;
+    const auto [edge, face] = with_points(crossing_of(job, found[i].kind, found[i].candidate));
+    bool used_exact = false;
+    pairs[i] = crossing_pair_of(edge, face, objects, order_of(job, found[i].kind), used_exact);
+    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+  }
   std::array<std::size_t, block_size> members;
   for (const FeaturePair kind :
        {FeaturePair::vertices, FeaturePair::vertex_edge, FeaturePair::vertex_face, FeaturePair::edges}) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const FoundPair& pair = found[i];
-      if (feature_pair_of(pair.features, pair.kind == ElementPairKind::edge_edge) != kind) continue;
-      worker.elements[count] = with_points(job, pair.kind, elements_of(job, pair.kind, pair.candidate));
+      if (pair.crosses() || feature_pair_of(pair.features, pair.kind == CandidateKind::edge_edge) != kind)
+        continue;
+      const auto element_kind = static_cast<ElementPairKind>(pair.kind);
+      worker.elements[count] = with_points(job, element_kind, elements_of(job, element_kind, pair.candidate));
       const auto& [first, second] = worker.elements[count];
       const auto points = points_of_features(pair.features);
       for (std::size_t k = 0; k < 4; ++k) {
@@ -312,20 +383,23 @@ void ProximityPass::compute_pairs(std::uint32_t job, std::span<const FoundPair> 
   }
 }
 
-/// Orders the pairs of each open job, each once, and tells their number to the outcomes.
+/// Orders the pairs of each job that found some, each once, and tells their number to the outcomes.
 void ProximityPass::sort_found(const Parallel& parallel) {
-  const std::span<const std::uint32_t> open_jobs = outcomes_.open_jobs();
   const std::span<const ContactTask> tasks = tasks_.tasks();
-  if (sorted_.size() < open_jobs.size()) sorted_.resize(open_jobs.size());
+  found_jobs_.clear();
+  for (const Worker& worker : workers_) {
+    for (const ProximityWorker::Run& run : worker.runs) found_jobs_.push_back(run.job);
+  }
+  sort_once(found_jobs_);
+  if (sorted_.size() < found_jobs_.size()) sorted_.resize(found_jobs_.size());
   for (std::vector<FoundPair>& sorted : sorted_) sorted.clear();
   for (Worker& worker : workers_) std::ranges::sort(worker.runs, {}, &ProximityWorker::Run::job);
-  parallel.for_ranges(open_jobs.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    for (std::size_t open = begin; open < end; ++open) {
-      sort_job(open_jobs[open], workers_[w].order, sorted_[open]);
-      const auto task = std::ranges::lower_bound(tasks, open_jobs[open], {}, &ContactTask::job);
-      if (task == tasks.end() || task->job != open_jobs[open]) continue;
+  parallel.for_ranges(found_jobs_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    for (std::size_t i = begin; i < end; ++i) {
+      sort_job(found_jobs_[i], workers_[w].order, sorted_[i]);
+      const auto task = std::ranges::lower_bound(tasks, found_jobs_[i], {}, &ContactTask::job);
       outcomes_.of_task(static_cast<std::size_t>(task - tasks.begin())).ranges[0].count =
-          static_cast<std::uint32_t>(sorted_[open].size());
+          static_cast<std::uint32_t>(sorted_[i].size());
     }
   });
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "answers/pass.hpp"
 #include "answers/search_options.hpp"
 #include "contact/distance/distance_kernels.hpp"
+#include "contact/distance/recent_elements.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "queries/pairs/proximity_pair.hpp"
@@ -32,10 +34,12 @@ struct ProximitySearch {
 struct FoundPair {
   std::uint32_t job = 0;
   PairName name;
-  ElementPairKind kind{};
+  CandidateKind kind{};
   ClosestFeatures features;  // of the elements of `ProximityPass::elements_of`
   ElementPair candidate;
 
+  /// An edge and a face; `features` says nothing.
+  bool crosses() const { return kind > CandidateKind::edge_edge; }
   bool operator<(const FoundPair& other) const {
     return job != other.job ? job < other.job : name < other.name;
   }
@@ -58,6 +62,13 @@ struct ProximityWorker : PassWorker<FoundPair> {
   bool is_full = false;         // nothing after the last of what was merged is needed
   FoundPair last;
   std::array<FoundPair, 256> recent;  // some of the candidates that were added before
+  /// What only exact arithmetic decides, of one job.
+  struct Decision {
+    std::optional<ClosestFeatures> features;
+    bool used_exact = false;
+  };
+  RecentElements<Decision> decisions;
+  std::uint32_t job_of_decisions = 0;
 
   void start();
 };
@@ -82,16 +93,27 @@ class ProximityPass : public Pass<ProximityPass, MovingObject, ProximityWorker, 
     std::array<std::uint32_t, 4> vertices;  // of first, then of second, in the order of their corners
     bool is_swapped = false;  // two edges of one object, in the other order than the candidate's
   };
+  /// A candidate that may cross.
+  struct Crossing {
+    const MovingObject &of_edge, &of_face;
+    const Edge& edge;
+    const Triangle& face;
+    std::uint32_t triangle;
+  };
 
   ObjectPairView view_of_job(std::uint32_t job) const;
   void run_task(std::size_t task, Worker& worker);
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
   void add(std::uint32_t job, ElementPairKind kind, ElementPair candidate, FeatureCode code, Worker& worker);
+  Crossing crossing_of(std::uint32_t job, CandidateKind kind, ElementPair candidate) const;
+  void test_crossings(std::uint32_t job, CandidateKind kind, std::span<const ElementPair> candidates,
+                      Worker& worker);
+  static std::array<PairElement, 2> with_points(const Crossing& crossing);
   Elements elements_of(std::uint32_t job, ElementPairKind kind, ElementPair candidate) const;
   std::array<PairElement, 2> with_points(std::uint32_t job, ElementPairKind kind,
                                          const Elements& elements) const;
-  PairOrder order_of(std::uint32_t job, ElementPairKind kind) const;
+  PairOrder order_of(std::uint32_t job, CandidateKind kind) const;
   void keep(const FoundPair& found, Worker& worker) const;
   void merge(Worker& worker) const;
   void sort_found(const Parallel& parallel);
@@ -102,12 +124,14 @@ class ProximityPass : public Pass<ProximityPass, MovingObject, ProximityWorker, 
 
   ProximitySearch search_;
   std::uint64_t max_pairs_ = 0;
+  std::size_t least_merge_ = 0;  // size of `found`
   /// Part of a list of `sorted_`.
   struct Block {
-    std::uint32_t open = 0, first = 0;
+    std::uint32_t list = 0, first = 0;
   };
   std::vector<Block> blocks_;
-  std::vector<std::vector<FoundPair>> sorted_;  // of each open job, each name once
+  std::vector<std::uint32_t> found_jobs_;
+  std::vector<std::vector<FoundPair>> sorted_;  // of each of these jobs, each name once
 };
 
 }  // namespace supple

@@ -119,6 +119,21 @@ ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3
   return best;
 }
 
+bool cross_by_algebra(const std::array<Vec3d, 2>& edge, const std::array<Vec3d, 3>& face) {
+  // edge[0] + t along = face[0] + p u + q v, by Cramer's rule.
+  const RationalVector start = exact(edge[0]), along = minus(exact(edge[1]), start), corner = exact(face[0]),
+                       u = minus(exact(face[1]), corner), v = minus(exact(face[2]), corner),
+                       w = minus(corner, start);
+  const auto determinant = [](const RationalVector& x, const RationalVector& y, const RationalVector& z) {
+    return dot_of(x, {y[1] * z[2] - y[2] * z[1], y[2] * z[0] - y[0] * z[2], y[0] * z[1] - y[1] * z[0]});
+  };
+  const Rational whole = determinant(along, u, v);
+  if (whole == 0) return false;
+  const Rational t = determinant(w, u, v) / whole, p = determinant(along, v, w) / whole,
+                 q = determinant(along, w, u) / whole;
+  return t > 0 && t < 1 && p > 0 && q > 0 && p + q < 1;
+}
+
 bool is_accurate(double distance, const Rational& squared) {
   double low = distance, high = distance;
   for (int i = 0; i < 4; ++i) {

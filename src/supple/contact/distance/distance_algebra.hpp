@@ -25,6 +25,10 @@ struct ExactDistance {
 /// to milliseconds.
 ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3d> b);
 
+/// Whether the inside of an edge crosses the inside of a face with corners not on one line, by the solution
+/// of the equations in rationals.
+bool cross_by_algebra(const std::array<Vec3d, 2>& edge, const std::array<Vec3d, 3>& face);
+
 /// Whether the distance is within 4 units in the last place of the exact one.
 bool is_accurate(double distance, const Rational& squared);
 

@@ -24,6 +24,18 @@ bool is_far_from(const Aabb& box, const Aabb& other) {
   return is_far(box, std::sqrt(squared_gap(box, other)), far_ratio);
 }
 
+/// With the edges and points of no triangle, as triangles without area. `inert` is memory for their search.
+QueriedObject with_extra_elements(QueriedObject queried, const WorldObject& object,
+                                  std::vector<std::uint8_t>& inert) {
+  if (!object.has_extra_elements()) return queried;
+  const bool are_finite = object.near().non_finite_vertices().empty();
+  if (!are_finite) mark_inert(object.octree(), object.placement().end(), ~std::uint32_t{0}, inert);
+  queried.view.arrays.inert = are_finite ? nullptr : inert.data();
+  queried.view.boxes = object.near().node_boxes();
+  queried.fine_boxes = nullptr;
+  return queried;
+}
+
 /// Whether two boxes may be within `distance` of each other.
 bool may_be_within(const Aabb& a, const Aabb& b, double distance) {
   const double square = squared_gap(a, b);
@@ -66,7 +78,9 @@ void Queries::find(NearObjects& near, double max_distance, const StopSignal& sto
     of_a.fine_boxes = a.fine_boxes();
     of_b.fine_boxes = b.fine_boxes();
   }
-  near.found = search.nearest(of_a, of_b, max_distance, near.guess, stop);
+  std::vector<std::uint8_t> inert_a, inert_b;
+  near.found = search.nearest(with_extra_elements(of_a, a, inert_a), with_extra_elements(of_b, b, inert_b),
+                              max_distance, near.guess, stop);
   if (near.found) {
     near.triangles = {a.octree().triangle_ids()[search.triangles().a],
                       b.octree().triangle_ids()[search.triangles().b]};

@@ -31,7 +31,10 @@ void NearestBound::set(const QueriedObject& object_a, const QueriedObject& objec
 }
 
 TriangleDepths NearestBound::depths(Side side, const QueriedObject& object, std::uint32_t triangle) const {
-  TriangleDepths result{object.corners(triangle), object.triangles[triangle], object.triangle_ids[triangle]};
+  TriangleDepths result;
+  result.points = object.corners(triangle);
+  result.vertices = object.triangles[triangle];
+  result.id = object.triangle_ids[triangle];
   const std::span<const Vec3d> feature = features_[side].all();
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3d& p = result.points[i];
@@ -41,15 +44,11 @@ TriangleDepths NearestBound::depths(Side side, const QueriedObject& object, std:
       result.depths[i] = planes_[side].depth(p);
     }
   }
+  result.level = level_of(side, result, all_corners);
   return result;
 }
 
-/// Both parts are not in front of their planes, so they are as near as the nearest features only where both
-/// are in the planes and one is exactly across from the other. In both features, that is the place where
-/// their nearest points are.
-bool NearestBound::excludes_equal(const TriangleDepths& of_a, unsigned corners_a, const TriangleDepths& of_b,
-                                  unsigned corners_b) const {
-  const Level level_a = level_of(a, of_a, corners_a), level_b = level_of(b, of_b, corners_b);
+bool NearestBound::excludes_equal(const TriangleLevel& level_a, const TriangleLevel& level_b) const {
   PairName least{FeatureKind::vertex,
                  FeatureKind::vertex,
                  {level_a.least_vertex, level_a.least_vertex},
@@ -59,10 +58,9 @@ bool NearestBound::excludes_equal(const TriangleDepths& of_a, unsigned corners_a
   return !(least < name_);
 }
 
-NearestBound::Level NearestBound::level_of(Side side, const TriangleDepths& triangle,
-                                           unsigned corners) const {
+TriangleLevel NearestBound::level_of(Side side, const TriangleDepths& triangle, unsigned corners) const {
   constexpr std::uint32_t largest = std::numeric_limits<std::uint32_t>::max();
-  Level level;
+  TriangleLevel level;
   level.name = {largest, 0};
   std::size_t count = 0;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -12,6 +12,14 @@
 
 namespace supple {
 
+/// The part of a triangle that is in the plane of its object.
+struct TriangleLevel {
+  bool is_in_feature = true;  ///< no more than the nearest feature
+  /// Of that feature, or the largest name where a part of it is missing.
+  std::array<std::uint32_t, 2> name{};
+  std::uint32_t least_vertex = std::numeric_limits<std::uint32_t>::max();
+};
+
 /// The depths of the corners of a triangle behind the plane of its object.
 struct TriangleDepths {
   TrianglePoints points;
@@ -19,6 +27,7 @@ struct TriangleDepths {
   std::uint32_t id = 0;
   std::array<double, 3> depths{};
   std::uint8_t in_feature = 0;  ///< bit i: corner i is where a vertex of the nearest feature is
+  TriangleLevel level;          ///< of all corners
 
   /// The least depth of the corners in a set of bits.
   double least(unsigned corners) const {
@@ -68,22 +77,21 @@ class NearestBound {
                 unsigned corners_b) const {
     const double least_a = of_a.least(corners_a), least_b = of_b.least(corners_b);
     if (least_a + least_b > 0) return true;
-    if (least_a >= 0 && least_b >= 0 && excludes_equal(of_a, corners_a, of_b, corners_b)) return true;
+    if (least_a >= 0 && least_b >= 0 &&
+        excludes_equal(corners_a == all_corners ? of_a.level : level_of(a, of_a, corners_a),
+                       corners_b == all_corners ? of_b.level : level_of(b, of_b, corners_b)))
+      return true;
     return are_apart(of_a.box(corners_a), least_a, of_b.box(corners_b), least_b);
   }
 
- private:
-  /// The part of a triangle that is in its plane.
-  struct Level {
-    bool is_in_feature = true;  ///< no more than the nearest feature
-    std::array<std::uint32_t, 2>
-        name{};  ///< of that feature, or the largest name where a part of it is missing
-    std::uint32_t least_vertex = std::numeric_limits<std::uint32_t>::max();
-  };
+  /// Both parts are not in front of their planes, so they are as near as the nearest features only where both
+  /// are in the planes and one is exactly across from the other. In both features, that is the place where
+  /// their nearest points are. Levels may be the least of several: not in the feature where one is not, and
+  /// the least name and vertex.
+  bool excludes_equal(const TriangleLevel& level_a, const TriangleLevel& level_b) const;
 
-  bool excludes_equal(const TriangleDepths& of_a, unsigned corners_a, const TriangleDepths& of_b,
-                      unsigned corners_b) const;
-  Level level_of(Side side, const TriangleDepths& triangle, unsigned corners) const;
+ private:
+  TriangleLevel level_of(Side side, const TriangleDepths& triangle, unsigned corners) const;
 
   bool is_set_ = false;
   std::uint64_t version_ = 0;

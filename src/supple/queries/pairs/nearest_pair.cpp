@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
+#include "contact/intersection/triangle_bounds.hpp"
 #include "contact/intersection/triangle_intersection.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/aabb.hpp"
@@ -75,6 +77,7 @@ void NearestPairSearch::start(const QueriedObject& a, const QueriedObject& b, Se
   intersects_ = false;
   best_.reset();
   bound_.clear();
+  farther_.clear();
   decided_triangles_ = decided_elements_ = 0;
   stack_.clear();
   vertices_and_faces_.count = 0;
@@ -252,22 +255,51 @@ void NearestPairSearch::test_leaves(const Entry& leaves) {
                       end_b = node_b.first_triangle[leaves.child_b + 1];
   const PointBounds box_a = seen_by_b(child_box(a_->view.boxes[leaves.node_a], leaves.child_a)),
                     box_b = seen_by_a(child_box(b_->view.boxes[leaves.node_b], leaves.child_b));
+  const QueryBox placed_a = a_->child_box(leaves.node_a, leaves.child_a),
+                 placed_b = b_->child_box(leaves.node_b, leaves.child_b);
   for (std::uint32_t begin_a = node_a.first_triangle[leaves.child_a]; begin_a < end_a;
        begin_a += leaf_block) {
     // A copy, because the next call may overwrite it.
     const LeafBoxes boxes_a =
         recent_.boxes_of(0, a_->leaves(), leaf_a, begin_a, std::min(begin_a + leaf_block, end_a));
-    const std::uint64_t near_a = near_triangles(box_b, boxes_a, squared_limit_);
+    const std::uint64_t near_a =
+        within_limit(*a_, begin_a, near_triangles(box_b, boxes_a, squared_limit_), placed_b);
     if (near_a == 0) continue;
     for (std::uint32_t begin_b = node_b.first_triangle[leaves.child_b]; begin_b < end_b;
          begin_b += leaf_block) {
       const LeafBoxes& boxes_b =
           recent_.boxes_of(1, b_->leaves(), leaf_b, begin_b, std::min(begin_b + leaf_block, end_b));
-      const std::uint64_t near_b = near_triangles(box_a, boxes_b, squared_limit_);
+      const std::uint64_t near_b =
+          within_limit(*b_, begin_b, near_triangles(box_a, boxes_b, squared_limit_), placed_a);
       if (near_b != 0) test_blocks(boxes_a, near_a, begin_a, boxes_b, near_b, begin_b);
       if (is_done()) return;
     }
   }
+}
+
+/// Those triangles of a block that may be within the limit of a box, where the box is small with respect to
+/// the limit: single precision hardly tells their distances apart.
+std::uint64_t NearestPairSearch::within_limit(const QueriedObject& object, std::uint32_t begin,
+                                              std::uint64_t triangles, const QueryBox& box) const {
+  constexpr int many = 8;
+  Vec3d middle, half;
+  for (int axis = 0; axis < 3; ++axis) {
+    middle[axis] = 0.5 * box.min[axis] + 0.5 * box.max[axis];
+    half[axis] = std::max(box.max[axis] - middle[axis], middle[axis] - box.min[axis]);
+  }
+  const double radius = scaled_norm(half) * (1 + 0x1p-40);
+  if (!(8 * radius < limit_) || !std::isfinite(limit_) || std::popcount(triangles) < many) return triangles;
+  std::array<TrianglePair, leaf_block> list;
+  std::array<double, leaf_block> lower, upper;
+  std::size_t count = 0;
+  for (std::uint64_t left = triangles; left != 0; left &= left - 1)
+    list[count++] = {begin + static_cast<std::uint32_t>(std::countr_zero(left)), 0};
+  bound_distances(middle, {object.view.arrays, object.view.translation}, std::span(list).first(count),
+                  lower.data(), upper.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (lower[i] * (1 - 0x1p-40) - radius > limit_) triangles &= ~(std::uint64_t{1} << (list[i].a - begin));
+  }
+  return triangles;
 }
 
 void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near_a, std::uint32_t begin_a,
@@ -284,6 +316,11 @@ void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near
       if (bound_.is_set()) {
         find_depths(NearestBound::a, begin_a, near_a, block_a_);
         find_depths(NearestBound::b, begin_b, near_b, block_b_);
+        // Many triangles at one place: none of them gives a better pair.
+        if (block_a_.least_of_all + block_b_.least_of_all > 0 ||
+            (block_a_.least_of_all >= 0 && block_b_.least_of_all >= 0 &&
+             bound_.excludes_equal(block_a_.level, block_b_.level)))
+          return;
         if (block_a_.least[i] + block_b_.least[k] > 0 ||
             bound_.excludes(block_a_.depths[i], NearestBound::all_corners, block_b_.depths[k],
                             NearestBound::all_corners))
@@ -302,11 +339,19 @@ void NearestPairSearch::find_depths(NearestBound::Side side, std::uint32_t begin
   block.begin = begin;
   block.version = bound_.version();
   block.triangles = triangles;
+  block.least_of_all = std::numeric_limits<double>::infinity();
+  block.level = {};
+  block.level.name.fill(std::numeric_limits<std::uint32_t>::max());
   const QueriedObject& object = side == NearestBound::a ? *a_ : *b_;
   for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
     block.depths[i] = bound_.depths(side, object, begin + i);
     block.least[i] = block.depths[i].least(NearestBound::all_corners);
+    const TriangleLevel& level = block.depths[i].level;
+    block.least_of_all = std::min(block.least_of_all, block.least[i]);
+    block.level.is_in_feature = block.level.is_in_feature && level.is_in_feature;
+    block.level.name = std::min(block.level.name, level.name);
+    block.level.least_vertex = std::min(block.level.least_vertex, level.least_vertex);
   }
 }
 
@@ -343,6 +388,9 @@ void NearestPairSearch::decide_elements(TrianglePair triangles, const TrianglePo
   const auto face = [](const QueriedObject& object, std::uint32_t triangle, const TrianglePoints& corners) {
     return PairElement(object.triangles[triangle], corners, object.triangle_ids[triangle]);
   };
+  // Makes room for all elements: the bound may not change between the depths and their use.
+  if (vertices_and_faces_.count + 6 > PointsBlock::capacity) consider(vertices_and_faces_);
+  if (edges_.count + 9 > PointsBlock::capacity) consider(edges_);
   TriangleDepths depths_a, depths_b;
   if (bound_.is_set()) {
     depths_a = bound_.depths(NearestBound::a, *a_, triangles.a);
@@ -372,7 +420,6 @@ void NearestPairSearch::add(const ElementCandidate& candidate) {
   const ElementPoints elements = points_of(candidate.first, candidate.second);
   for (std::size_t i = 0; i < 4; ++i) list.block.set(i, list.count, elements.points[i]);
   list.candidates[list.count++] = candidate;
-  if (list.count == PointsBlock::capacity) consider(list);
 }
 
 void NearestPairSearch::consider_all() {
@@ -399,16 +446,18 @@ void NearestPairSearch::consider(Candidates& list) {
 }
 
 void NearestPairSearch::consider(const ElementCandidate& candidate) {
-  ++decided_elements_;
   const auto& [first, second, order, triangles] = candidate;
+  const ElementPoints elements = points_of(first, second);
+  if (farther_.find(elements) != nullptr) return;
+  ++decided_elements_;
   const auto pair = proximity_pair_within(first, second, {a_->id, b_->id}, order, ProximityListing::features,
                                           limit_, used_exact_);
-  if (!pair) return;
-  const ElementPoints elements = points_of(first, second);
+  if (!pair) return farther_.store(elements, true);
   if (best_) {
     const bool is_same = name_of(*pair) == name_of(*best_);
     const int side = is_same ? 0 : compare_distances(elements, best_elements_, used_exact_);
-    if (side > 0 || (side == 0 && name_of(*best_) <= name_of(*pair))) return;
+    if (side > 0) return farther_.store(elements, true);
+    if (side == 0 && name_of(*best_) <= name_of(*pair)) return;
   }
   best_ = pair;
   best_elements_ = elements;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/distance/distance_kernels.hpp"
+#include "contact/distance/recent_elements.hpp"
 #include "core/stop_signal.hpp"
 #include "narrow_phase/query_kernels.hpp"
 #include "narrow_phase/recent_leaf_boxes.hpp"
@@ -50,6 +51,8 @@ class NearestPairSearch {
     std::uint64_t triangles = 0, version = 0;
     std::array<TriangleDepths, leaf_block> depths;
     std::array<double, leaf_block> least;
+    double least_of_all = 0;
+    TriangleLevel level;  // the least
   };
   /// A vertex and a face, or two edges.
   struct ElementCandidate {
@@ -70,6 +73,8 @@ class NearestPairSearch {
   bool are_apart(const Entry& entry) const;
   void expand(std::uint32_t node_a, int first_a, int end_a, std::uint32_t node_b, int first_b, int end_b);
   void test_leaves(const Entry& leaves);
+  std::uint64_t within_limit(const QueriedObject& object, std::uint32_t begin, std::uint64_t triangles,
+                             const QueryBox& box) const;
   void test_blocks(const LeafBoxes& boxes_a, std::uint64_t near_a, std::uint32_t begin_a,
                    const LeafBoxes& boxes_b, std::uint64_t near_b, std::uint32_t begin_b);
   void find_depths(NearestBound::Side side, std::uint32_t begin, std::uint64_t triangles, BlockDepths& block);
@@ -105,6 +110,7 @@ class NearestPairSearch {
   NearestBound bound_;
   BlockDepths block_a_, block_b_;
   std::vector<Entry> stack_;
+  RecentElements<bool> farther_;  // elements that are farther apart than the nearest
   Candidates vertices_and_faces_, edges_;
   RecentLeafBoxes recent_;
   ObjectQueries queries_;

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "contact/distance/edge_face_crossing.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -156,6 +157,31 @@ ProximityPair proximity_pair_of(const PairElement& first, const PairElement& sec
   }
   pair.normal = pair.normal + Vec3d{};  // no negative zeros, which depend on the order of the elements
   return pair;
+}
+
+PairName name_of_crossing(const ElementIds& edge, const ElementIds& face, PairOrder order) {
+  PairName name{edge.kind, face.kind, edge.name(), face.name()};
+  if (order == PairOrder::swapped) {
+    std::swap(name.kind_a, name.kind_b);
+    std::swap(name.element_a, name.element_b);
+  }
+  return name;
+}
+
+ProximityPair crossing_pair_of(const PairElement& edge, const PairElement& face, const ObjectPair& objects,
+                               PairOrder order, bool& used_exact) {
+  const EdgeFaceCrossing found = crossing_of({edge.points[0], edge.points[1]}, corners_of(face), used_exact);
+  ProximityPair pair{
+      objects.a,     objects.b,      edge.kind,      face.kind,   edge.name(),
+      face.name(),   {edge.kind, 0}, {face.kind, 0}, 0,           {found.on_edge[0], found.on_edge[1], 0},
+      found.on_face, found.point,    found.point,    found.normal};
+  if (order == PairOrder::swapped) swap_sides(pair);
+  pair.normal = pair.normal + Vec3d{};
+  return pair;
+}
+
+TrianglePoints corners_of(const PairElement& face) {
+  return in_corner_order(face).points;
 }
 
 }  // namespace supple

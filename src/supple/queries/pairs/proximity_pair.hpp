@@ -10,6 +10,7 @@
 #include "contact/distance/element_distance.hpp"
 #include "supple/proximity.hpp"
 #include "supple/result.hpp"
+#include "supple/triangle_intersection.hpp"
 
 namespace supple {
 
@@ -97,5 +98,13 @@ ProximityPair proximity_pair_of(const PairElement& first, const PairElement& sec
 std::optional<ProximityPair> proximity_pair_within(const PairElement& first, const PairElement& second,
                                                    const ObjectPair& objects, PairOrder order,
                                                    ProximityListing listing, double reach, bool& used_exact);
+
+/// The name and the pair of an edge that crosses a face, as `edge_crosses_face` says. They are the same in
+/// both listings. Sets `used_exact` when integers decide.
+PairName name_of_crossing(const ElementIds& edge, const ElementIds& face, PairOrder order);
+ProximityPair crossing_pair_of(const PairElement& edge, const PairElement& face, const ObjectPair& objects,
+                               PairOrder order, bool& used_exact);
+/// The corners of a face in the user's order.
+TrianglePoints corners_of(const PairElement& face);
 
 }  // namespace supple

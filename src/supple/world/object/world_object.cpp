@@ -105,15 +105,20 @@ VertexWays WorldObject::ways(const Parallel& parallel) const {
   return all;
 }
 
+SearchedShapes WorldObject::of_this(SearchedShapes shapes) const {
+  shapes.near = shapes.near || (shapes.extra && has_extra_elements());
+  return shapes;
+}
+
 bool WorldObject::is_stale(const SearchedShapes& shapes) const {
-  return has_moved_ || shapes != updated_ || needs_refit(shapes);
+  return has_moved_ || of_this(shapes) != updated_ || needs_refit(shapes);
 }
 
 bool WorldObject::needs_refit(const SearchedShapes& shapes) const {
   const bool has_resting =
       is_lazy(shapes) ? resting_.has_object(placement_) : resting_.is_current(placement_);
   return (shapes.resting && !has_resting) || (shapes.moving && !moving_.is_current(placement_)) ||
-         (shapes.near && !near().is_current(placement_));
+         (of_this(shapes).near && !near().is_current(placement_));
 }
 
 SearchedShapes WorldObject::with_current(SearchedShapes shapes) const {
@@ -123,7 +128,8 @@ SearchedShapes WorldObject::with_current(SearchedShapes shapes) const {
   return shapes;
 }
 
-void WorldObject::update(const SearchedShapes& shapes, const Parallel& parallel) {
+void WorldObject::update(const SearchedShapes& of_search, const Parallel& parallel) {
+  const SearchedShapes shapes = of_this(of_search);
   const bool was_behind = needs_refit(shapes);
   const bool refits_elements =
       (shapes.moving && !moving_.is_current(placement_)) || (shapes.near && !near().is_current(placement_));

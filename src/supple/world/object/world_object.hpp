@@ -31,12 +31,13 @@ struct SearchedShapes {
   bool lazy = false;
   /// Self-collision culling, for objects that are tested against themselves.
   bool cull_resting = false, cull_moving = false;
+  bool extra = false;  ///< as `near`, for objects with edges and points of no triangle
 
   constexpr bool operator==(const SearchedShapes&) const = default;
 };
 
 /// The data of objects that queries of points, rays and distances need.
-constexpr SearchedShapes shapes_of_queries{.resting = true, .cull_resting = true};
+constexpr SearchedShapes shapes_of_queries{.resting = true, .cull_resting = true, .extra = true};
 
 /// One object of a scene: its octree, its placement, and the shapes that searches read.
 class WorldObject {
@@ -59,7 +60,7 @@ class WorldObject {
   /// Whether a shape is out of date, so that triangles must be refitted.
   bool needs_refit(const SearchedShapes& shapes) const;
   /// Updates the shapes and the volumes.
-  void update(const SearchedShapes& shapes, const Parallel& parallel);
+  void update(const SearchedShapes& of_search, const Parallel& parallel);
 
   /// After an update of lazy shapes: the volumes of the children of a node. Returns the number of triangles
   /// that it read.
@@ -159,6 +160,8 @@ class WorldObject {
   void refit(const SearchedShapes& shapes, const Parallel& parallel);
   std::size_t update_resting(const SearchedShapes& shapes, const Parallel& parallel);
   bool is_lazy(const SearchedShapes& shapes) const { return shapes.lazy && !options.self_collision; }
+  /// With `near`, if `extra` asks for it.
+  SearchedShapes of_this(SearchedShapes shapes) const;
   /// Adds the shapes that are up to date.
   SearchedShapes with_current(SearchedShapes shapes) const;
   double current_query_cost() const;
