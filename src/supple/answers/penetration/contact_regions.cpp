@@ -131,20 +131,23 @@ bool ContactRegions::is_cut_by(std::uint32_t curve, std::uint32_t v, std::uint32
 }
 
 /// Whether the vertex can belong to the region and was not reached before.
+bool ContactRegions::is_open(std::uint32_t vertex) const {
+  return state_[vertex] < stamp_ - 1 && (marks_[vertex] & is_on_other) == 0;
+}
+
 bool ContactRegions::reach(std::uint32_t vertex) {
-  if (state_[vertex] >= stamp_ - 1 || (marks_[vertex] & is_on_other) != 0) return false;
+  if (!is_open(vertex)) return false;
   state_[vertex] = stamp_;
   return true;
 }
 
 template <class IsCut>
-bool ContactRegions::add_neighbours(std::uint32_t v, const IsCut& is_cut, std::vector<std::uint32_t>& list) {
+void ContactRegions::add_neighbours(std::uint32_t v, const IsCut& is_cut, std::vector<std::uint32_t>& list) {
   for (const std::uint32_t t : surface_.around->around(v)) {
     for (const std::uint32_t w : surface_.triangle(t)) {
-      if (w != v && !is_cut(v, w) && reach(w)) list.push_back(w);
+      if (is_open(w) && !is_cut(v, w) && reach(w)) list.push_back(w);
     }
   }
-  return true;
 }
 
 void ContactRegions::grow(std::uint32_t curve, std::size_t most) {

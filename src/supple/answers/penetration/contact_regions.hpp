@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "answers/penetration/surface_view.hpp"
@@ -78,9 +79,10 @@ class ContactRegions {
   std::span<const Crossing> crossings_of(std::uint32_t corner, std::uint32_t other) const;
   bool is_cut(std::uint32_t v, std::uint32_t w) const;
   bool is_cut_by(std::uint32_t curve, std::uint32_t v, std::uint32_t w) const;
+  bool is_open(std::uint32_t vertex) const;
   bool reach(std::uint32_t vertex);
   template <class IsCut>
-  bool add_neighbours(std::uint32_t v, const IsCut& is_cut, std::vector<std::uint32_t>& list);
+  void add_neighbours(std::uint32_t v, const IsCut& is_cut, std::vector<std::uint32_t>& list);
 
   SurfaceView surface_;
   std::vector<Crossing> crossings_;
