@@ -300,4 +300,11 @@ class PairChecker {
   std::vector<std::array<std::set<std::uint32_t>, 2>> pieces_of_curve_;  // whose triangles the curve crosses
 };
 
+/// Whether a fault comes from the directions that are tried: the faces on which a curve lies change with a
+/// small move, and with them the depth. All other faults are wrong depths.
+inline bool is_of_directions(const std::string& fault) {
+  const auto is = [&](const char* words) { return fault.find(words) != std::string::npos; };
+  return is("moved by") || is("exchanged") || is("still overlap");
+}
+
 }  // namespace supple::solids

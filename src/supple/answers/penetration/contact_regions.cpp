@@ -150,7 +150,7 @@ void ContactRegions::add_neighbours(std::uint32_t v, const IsCut& is_cut, std::v
   }
 }
 
-void ContactRegions::grow(std::uint32_t curve, std::size_t most) {
+void ContactRegions::begin(std::uint32_t curve) {
   constexpr std::uint32_t almost_all = 0xfffffff0;
   if (stamp_ > almost_all) {
     std::fill(state_.begin(), state_.end(), 0);
@@ -160,19 +160,25 @@ void ContactRegions::grow(std::uint32_t curve, std::size_t most) {
   inside_.clear();
   beyond_.clear();
   middles_.clear();
-  const auto seeds =
-      std::span(seeds_).subspan(first_seed_[curve], first_seed_[curve + 1] - first_seed_[curve]);
-  for (const Seed& seed : seeds) {
+  for (const Seed& seed : seeds_of(curve)) {
     if (seed.place == Place::inside && reach(seed.vertex)) inside_.push_back(seed.vertex);
     if (seed.place == Place::front && state_[seed.vertex] != stamp_) state_[seed.vertex] = stamp_ - 1;
   }
+}
+
+void ContactRegions::decide(std::uint32_t vertex, bool is_inside) {
+  if (is_inside) inside_.push_back(vertex);
+  state_[vertex] = is_inside ? stamp_ : stamp_ - 1;
+}
+
+void ContactRegions::grow(std::uint32_t curve, std::size_t most) {
   for (std::size_t next = 0; next < inside_.size() && inside_.size() < most; ++next)
     add_neighbours(
         inside_[next], [&](std::uint32_t v, std::uint32_t w) { return is_cut(v, w); }, inside_);
 
   const std::size_t most_beyond = 64 + 16 * (first_seed_[curve + 1] - first_seed_[curve]);
   const auto is_cut_here = [&](std::uint32_t v, std::uint32_t w) { return is_cut_by(curve, v, w); };
-  for (const Seed& seed : seeds) {
+  for (const Seed& seed : seeds_of(curve)) {
     if (seed.place == Place::beyond && reach(seed.vertex)) beyond_.push_back(seed.vertex);
   }
   for (const std::uint32_t v : inside_) {

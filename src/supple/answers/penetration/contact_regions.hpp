@@ -39,8 +39,12 @@ class ContactRegions {
   /// Call after the last point. O(n log n) for n points.
   void link(std::uint32_t curve_count);
 
-  /// Finds the region of a curve, in O(contacts of the curve, vertices of the region). It ends after `most`
-  /// vertices.
+  /// Starts the region of a curve with what its contacts tell.
+  void begin(std::uint32_t curve);
+  /// Whether no contact told on which side the vertex is, and `decide` neither.
+  bool is_open(std::uint32_t vertex) const;
+  void decide(std::uint32_t vertex, bool is_inside);
+  /// Grows the region, in O(contacts of the curve, vertices of the region). It ends after `most` vertices.
   void grow(std::uint32_t curve, std::size_t most);
   /// The vertices behind the other surface that are connected to the curve.
   std::span<const std::uint32_t> inside() const { return inside_; }
@@ -75,11 +79,13 @@ class ContactRegions {
   };
 
   void add_crossing(const Point& point, std::uint32_t corner, std::uint32_t other);
+  std::span<const Seed> seeds_of(std::uint32_t curve) const {
+    return std::span(seeds_).subspan(first_seed_[curve], first_seed_[curve + 1] - first_seed_[curve]);
+  }
   void list_seeds(std::span<const Crossing> edge);
   std::span<const Crossing> crossings_of(std::uint32_t corner, std::uint32_t other) const;
   bool is_cut(std::uint32_t v, std::uint32_t w) const;
   bool is_cut_by(std::uint32_t curve, std::uint32_t v, std::uint32_t w) const;
-  bool is_open(std::uint32_t vertex) const;
   bool reach(std::uint32_t vertex);
   template <class IsCut>
   void add_neighbours(std::uint32_t v, const IsCut& is_cut, std::vector<std::uint32_t>& list);

@@ -189,8 +189,20 @@ void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& 
   measure(members, curve);
   // In proportion to the contacts, where the other surface is not known to bound the region.
   const std::size_t n = members.size(), many = 64 + 16 * n + n * n / 4, all = ~std::size_t{0};
-  regions_[0].grow(curve_of_[members.front()], input_.b_is_solid ? all : many);
-  regions_[1].grow(curve_of_[members.front()], input_.a_is_solid ? all : many);
+  const std::uint32_t number = curve_of_[members.front()];
+  for (std::size_t side = 0; side < 2; ++side) {
+    ContactRegions& region = regions_[side];
+    const SurfaceView& surface = side == 0 ? input_.a : input_.b;
+    const bool other_is_solid = !input_.same_object && (side == 0 ? input_.b_is_solid : input_.a_is_solid);
+    region.begin(number);
+    // Contacts at corners of the other surface may tell nothing.
+    for (std::size_t i = 0; i < n && other_is_solid && region.inside().empty(); ++i) {
+      for (const std::uint32_t v : surface.triangle(triangle_of(members[i], side))) {
+        if (region.is_open(v)) region.decide(v, way_out_.contains(1 - side, surface.position(v)));
+      }
+    }
+    region.grow(number, other_is_solid ? all : many);
+  }
   curve.enclosed_count_a = static_cast<std::uint32_t>(enclose(members, false, lists));
   curve.enclosed_count_b = static_cast<std::uint32_t>(enclose(members, true, lists));
   find_way_out(members, curve);

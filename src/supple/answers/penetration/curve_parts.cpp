@@ -62,24 +62,57 @@ class SharedPolygon {
   std::size_t count_ = 3;
 };
 
+constexpr double nothing = -std::numeric_limits<double>::infinity();
+
+/// The height of the plane of a triangle at a point, within that of its corners.
+double height_at(const TrianglePoints& q, double area, const Vec3d& p) {
+  const double along_1 = turn(q[2], q[0], p) / area, along_2 = turn(q[0], q[1], p) / area;
+  const auto [low, high] = std::minmax({q[0].z, q[1].z, q[2].z});
+  return std::clamp(q[0].z + along_1 * (q[1].z - q[0].z) + along_2 * (q[2].z - q[0].z), low, high);
+}
+
+/// The longest way in z from the edges of an upright triangle to another triangle, or the other way round.
+/// Edges at its border are not ahead of it.
+double way_of_upright(const TrianglePoints& upright, const TrianglePoints& q, double area, double slack,
+                      double sign) {
+  double longest = nothing;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d &p = upright[i], &r = upright[(i + 1) % 3];
+    double first = 0, last = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d &u = q[k], &v = q[(k + 1) % 3];
+      const double side = area > 0 ? 1 : -1, least = slack * (std::fabs(v.x - u.x) + std::fabs(v.y - u.y));
+      const double of_p = side * turn(u, v, p) - least, of_r = side * turn(u, v, r) - least;
+      if (of_p <= 0 && of_r <= 0) last = -1;
+      if (of_p < 0 && of_r > 0) first = std::max(first, of_p / (of_p - of_r));
+      if (of_p > 0 && of_r < 0) last = std::min(last, of_p / (of_p - of_r));
+    }
+    if (first > last) continue;
+    for (const double t : {first, last}) {
+      const Vec3d at = mix(p, r, t);
+      longest = std::max(longest, sign * (height_at(q, area, at) - at.z));
+    }
+  }
+  return longest;
+}
+
 /// The longest way in z from a to b; minus infinity when nothing of b is straight ahead.
 double way_between(const TrianglePoints& a, const TrianglePoints& b) {
-  constexpr double none = -std::numeric_limits<double>::infinity();
   double size = 0;
   for (std::size_t i = 0; i < 3; ++i)
     size = std::max({size, largest_magnitude(a[i] - a[0]), largest_magnitude(b[i] - b[0])});
   const double slack = 0x1p-40 * size, area_a = turn(a[0], a[1], a[2]), area_b = turn(b[0], b[1], b[2]);
-  if (!(std::min(std::fabs(area_a), std::fabs(area_b)) > slack * size)) return none;
-  if (!reaches_in(a, b, slack) || !reaches_in(b, a, slack)) return none;
+  const bool a_is_upright = !(std::fabs(area_a) > slack * size),
+             b_is_upright = !(std::fabs(area_b) > slack * size);
+  if (a_is_upright && b_is_upright) return nothing;
+  if (a_is_upright) return way_of_upright(a, b, area_b, slack, 1);
+  if (b_is_upright) return way_of_upright(b, a, area_a, slack, -1);
+  if (!reaches_in(a, b, slack) || !reaches_in(b, a, slack)) return nothing;
   // The heights stay within those of the corners, so that no way exceeds the bound of a node.
   const double lowest_a = std::min({a[0].z, a[1].z, a[2].z});
-  const auto [low, high] = std::minmax({b[0].z, b[1].z, b[2].z});
-  double longest = none;
-  for (const Vec3d& p : SharedPolygon(a, b)) {
-    const double along_1 = turn(b[2], b[0], p) / area_b, along_2 = turn(b[0], b[1], p) / area_b;
-    const double height = b[0].z + along_1 * (b[1].z - b[0].z) + along_2 * (b[2].z - b[0].z);
-    longest = std::max(longest, std::clamp(height, low, high) - std::max(p.z, lowest_a));
-  }
+  double longest = nothing;
+  for (const Vec3d& p : SharedPolygon(a, b))
+    longest = std::max(longest, height_at(b, area_b, p) - std::max(p.z, lowest_a));
   return longest;
 }
 

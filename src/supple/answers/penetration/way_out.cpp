@@ -76,13 +76,16 @@ void WayOut::choose_probes(std::size_t side) {
   probes.swap(chosen_);
 }
 
-/// How far a probe is from where it leaves the other body along `normal`, scaled; less than 0 when it does
-/// not meet its surface from inside. The triangle that it meets becomes one of the parts.
-double WayOut::cast(std::size_t side, const Vec3d& probe, const Vec3d& normal) {
+/// How far a point is from where it leaves the other body along `normal`, scaled; less than 0 when it does
+/// not meet its surface from inside. The triangle that it meets becomes one of the parts. A point that is
+/// known to be inside also leaves where it meets an edge of which the first triangle is parallel to the ray.
+double WayOut::cast(std::size_t side, const Vec3d& point, const Vec3d& normal, bool is_inside) {
   const Body& other = bodies_[1 - side];
   const Vec3d direction = side == 0 ? normal : Vec3d{} - normal;
-  const auto hit = queries_[1 - side].cast(std::span(other.queried, 1), {probe, direction}, false);
-  if (!hit || !(dot(unit_normal(other.surface.corners(hit->triangle)), direction) > 0)) return -1;
+  const auto hit = queries_[1 - side].cast(std::span(other.queried, 1), {point, direction}, false);
+  if (!hit) return -1;
+  const double outwards = dot(unit_normal(other.surface.corners(hit->triangle)), direction);
+  if (!(is_inside ? outwards >= 0 : outwards > 0)) return -1;
   if (is_listed_[1 - side][hit->triangle] == 0) {
     for (const std::uint32_t v : other.surface.triangle(hit->triangle)) {
       for (const std::uint32_t t : other.surface.around->around(v)) add_triangle(1 - side, t);
@@ -97,7 +100,7 @@ WayOut::Tried WayOut::try_along(const Vec3d& normal, double limit) {
   for (std::size_t side = 0; side < 2 && bodies_[0].queried != nullptr && depth <= limit * equal; ++side) {
     for (const Vec3d& probe : probes_[side]) {
       if (way != none && parts_.is_covered(side, scale_ * probe - origin_, way)) continue;
-      const double exit = cast(side, probe, normal);
+      const double exit = cast(side, probe, normal, true);
       if (exit <= depth) continue;
       // The triangle through which the probe leaves is a part now.
       if (exit <= limit * equal) way = parts_.way_along(normal, limit * equal);
@@ -153,7 +156,7 @@ double WayOut::depth_without_return(const Way& way) {
         const double moved = depth * (1 + 0x1p-30) + 0x1p-44, sign = side == 0 ? 1 : -1;
         const Vec3d place = probe + (sign * moved / scale_) * way.normal;
         const double exit =
-            is_in_box(bodies_[1 - side].queried->box, place) ? cast(side, place, way.normal) : -1;
+            is_in_box(bodies_[1 - side].queried->box, place) ? cast(side, place, way.normal, false) : -1;
         if (exit < 0) continue;
         depth = moved + exit;
         is_free = false;

@@ -35,6 +35,11 @@ class WayOut {
   /// Starts another pair of bodies, a and b.
   void start(const Body& a, const Body& b);
 
+  /// Whether a point is inside a body, which is solid.
+  bool contains(std::size_t side, const Vec3d& point) {
+    return queries_[side].inside(0, *bodies_[side].queried, point) == Containment::inside;
+  }
+
   /// Starts another curve. Lengths are `scale` times those of the user, a power of two, and positions of
   /// parts are relative to `origin`.
   void clear(double scale, const Vec3d& origin);
@@ -59,7 +64,7 @@ class WayOut {
 
   void choose_probes(std::size_t side);
   Tried try_along(const Vec3d& normal, double limit);
-  double cast(std::size_t side, const Vec3d& probe, const Vec3d& normal);
+  double cast(std::size_t side, const Vec3d& point, const Vec3d& normal, bool is_inside);
   void try_corners(std::span<const WayCandidate> candidates);
   double depth_without_return(const Way& way);
   double least_depth() const;
