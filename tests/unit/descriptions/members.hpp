@@ -74,8 +74,8 @@ inline auto members_of(SimulationOptions& o) {
   return std::tie(a, b, c, d, e, f);
 }
 inline auto members_of(StepStats& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w, x, y, z] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w, x, y, z);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w, x, y, z, aa] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w, x, y, z, aa);
 }
 inline auto members_of(BroadPhaseStats& o) {
   auto& [a, b, c, d, e, f, g, h] = o;

@@ -123,7 +123,9 @@ TEST_P(ContinuousScenes, FindTheEarliestOfAll) {
       ASSERT_NE(first, all.end());
       EXPECT_EQ(scene.earliest_impact(), *first) << seed;
       // What touches at the start may part.
-      if (first->toi > 0) EXPECT_EQ(scene.max_step().step, first->toi);
+      if (first->toi > 0) {
+        EXPECT_EQ(scene.max_step().step, first->toi);
+      }
     }
   }
 }

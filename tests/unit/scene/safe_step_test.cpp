@@ -532,7 +532,9 @@ TEST(SafeStep, OfWildMotionsIsThatOfShortOnes) {
       EXPECT_NEAR(found.step * length / expected, 1, 1e-5) << length << " " << keep;
       EXPECT_NEAR(scene.max_step().step * length / longest, 1, 1e-5) << length;
       const std::vector<Path> paths = wild_sheets(length);
-      if (length < 1e9) EXPECT_GE(least_share(paths, found.step, 0), keep * (1 - 1e-4)) << length;
+      if (length < 1e9) {
+        EXPECT_GE(least_share(paths, found.step, 0), keep * (1 - 1e-4)) << length;
+      }
       double least = 1;
       for (const ObjectStep& step : scene.collision_free_steps({.keep = keep}))
         least = std::min(least, step.safe.step);
