@@ -188,9 +188,8 @@ bool part_after_start(const MovingTriangle& a, const MovingTriangle& b) {
   // The largest numbers are sums of fewer than 256 products of three or four differences.
   const BitRange range(numbers);
   constexpr auto most = [](int limbs) { return (limbs * 64 - 1 - 8) / 4 - 2; };
-  static_assert(most(134) >= 2098, "all doubles");
   if (range.width <= most(5)) return part<WideInteger<5>>(numbers, range.lowest, a.moves, b.moves);
-  return part<WideInteger<134>>(numbers, range.lowest, a.moves, b.moves);
+  return range.width <= most(12) && part<WideInteger<12>>(numbers, range.lowest, a.moves, b.moves);
 }
 
 }  // namespace supple

@@ -17,6 +17,9 @@ struct MovingTriangle {
 /// does not say on which side each of them is, must also leave a face towards its outer side: one of two that
 /// face each other, or else that of the object at rest, or both.
 ///
+/// False also for coordinates that span more than 187 bits, from the largest number to the last bit of the
+/// most precise one.
+///
 /// Two edges of no triangle that cross each other have no side; they part only when they slide in one plane.
 bool part_after_start(const MovingTriangle& a, const MovingTriangle& b);
 
