@@ -74,8 +74,9 @@ void ContactRegions::link(std::uint32_t curve_count) {
     list_seeds(std::span(crossings_).subspan(first, next - first));
   }
   std::sort(seeds_.begin(), seeds_.end());
-  std::stable_sort(all_middles_.begin(), all_middles_.end(),
-                   [](const Middle& p, const Middle& q) { return p.curve < q.curve; });
+  std::sort(all_middles_.begin(), all_middles_.end(), [](const Middle& p, const Middle& q) {
+    return p.curve != q.curve ? p.curve < q.curve : lexicographically_less(p.position, q.position);
+  });
   const auto list_first = [&](const auto& list, std::vector<std::uint32_t>& first_of) {
     first_of.assign(curve_count + 1, 0);
     for (const auto& item : list) ++first_of[item.curve + 1];

@@ -307,8 +307,9 @@ void CurveFinder::list_face_normals(std::span<const std::uint32_t> members) {
   if (count > few)
     std::erase_if(directions_, [&](const Direction& direction) { return direction.length < whole / 8; });
   // The faces with most of the curve are most likely the way out.
-  std::stable_sort(directions_.begin(), directions_.end(),
-                   [](const Direction& p, const Direction& q) { return p.length > q.length; });
+  std::sort(directions_.begin(), directions_.end(), [](const Direction& p, const Direction& q) {
+    return p.length != q.length ? p.length > q.length : p < q;
+  });
 }
 
 /// The direction of the area that segments surround, each in the direction n_b x n_a, in any order; zero when
