@@ -156,11 +156,11 @@ class ContactKinds(enum.IntFlag):
     proximity = 4
     'Every two features, or elements, within the margins of their objects at the current positions; see `ProximityPair`.'
     penetration = 8
-    'What objects that intersect do: vertices inside solids with their depths, contained parts, and curves; see `Penetration`, `ContainedPart` and `IntersectionCurve`. It includes `intersection`.'
+    'What objects that intersect do: vertices inside solids with their depths, and contained parts; with `SceneOptions.curves` also curves. See `Penetration`, `ContainedPart` and `IntersectionCurve`. It includes `intersection`.'
 
 
 class ElementKinds(enum.IntEnum):
-    'The pairs of elements that continuous contacts and proximity search.'
+    'The pairs of elements that continuous contacts and proximity search. For proximity, `all` also has edges that cross faces.'
 
     all = 0
     vertex_face = 1
@@ -174,14 +174,6 @@ class ContinuousListing(enum.IntEnum):
     all = 0
     first = 1
     'The first contact of each vertex, edge and face, by time of impact and then in canonical order.'
-
-
-class PenetrationDepths(enum.IntEnum):
-    'Which vertices inside solids are listed with their depths.'
-
-    all = 0
-    deepest = 1
-    'One vertex for each object and each solid that it enters: that with the largest `Penetration.depth`, the smallest of several. Takes less time where depths take most of it, as for large meshes, because most vertices are only shown to be less deep.'
 
 
 class Neighbours(enum.IntEnum):
@@ -207,9 +199,9 @@ class ProximityListing(enum.IntEnum):
     'What a list of proximity pairs contains.'
 
     features = 0
-    'Each pair of features once: two vertices, a vertex and the inside of an edge or of a face, or the insides of two edges. What a solver needs: one pair for each constraint.'
+    'Each pair of features once: two vertices, a vertex and the inside of an edge or of a face, or the insides of two edges; and each edge that crosses a face. What a solver needs: one pair for each constraint.'
     elements = 1
-    'Every vertex and face and every two edges within the margins, with their closest points.'
+    'Every vertex and face and every two edges within the margins, with their closest points; and each edge that crosses a face.'
 
 
 class Containment(enum.IntEnum):
@@ -281,7 +273,7 @@ class PenetrationDifferenceFault(enum.IntEnum):
     added = 1
     'reported, but not so'
     inexact = 2
-    'reported with another triangle than the nearest, or with an inaccurate depth'
+    'reported with another triangle than the nearest, or with an inaccurate depth; or it does not leave b when it moves along the normal of the curve by its depth'
 
 
 class ResultPlacement(enum.IntEnum):
@@ -306,7 +298,7 @@ class Integrator(enum.IntEnum):
     'Implicit: up to six sparse linear systems per step. First order, stable at any stiffness.'
 
 
-ENUMERATIONS = [ObjectOctreeBuild, SphereFit, RegionSphereTest, Descent, FeatureKind, IntersectionKind, ElementPairKind, ImpactCertainty, PairStage, Lasting, ManifoldSource, BoundingVolume, BroadPhaseMethod, ContactKinds, ElementKinds, ContinuousListing, PenetrationDepths, Neighbours, CurveKind, ProximityListing, Containment, NothingToTest, ContinuousDifferenceFault, ProximityDifferenceFault, PenetrationDifferenceFault, ResultPlacement, Integrator]
+ENUMERATIONS = [ObjectOctreeBuild, SphereFit, RegionSphereTest, Descent, FeatureKind, IntersectionKind, ElementPairKind, ImpactCertainty, PairStage, Lasting, ManifoldSource, BoundingVolume, BroadPhaseMethod, ContactKinds, ElementKinds, ContinuousListing, Neighbours, CurveKind, ProximityListing, Containment, NothingToTest, ContinuousDifferenceFault, ProximityDifferenceFault, PenetrationDifferenceFault, ResultPlacement, Integrator]
 
 
 #: The comments of functions and methods in the headers.
@@ -348,7 +340,7 @@ CONTRACTS = {
     'DistributedScene::detect':
         'Finds the contacts as `Scene.detect` does. The result is valid until the next call. Counts of its statistics are sums over all ranks, its times those of the slowest rank. A stop on one rank stops the call on all of them. Requests with `max_contacts`, manifolds or first contacts of elements are errors.',
     'DistributedScene::distances':
-        'As `Scene.distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair.',
+        'As `Scene.distances`, on the ranks that `ResultPlacement` says. A rank gets both objects of a pair. A stop on one rank is an `Error` on all of them, because an empty list would look like an answer.',
     'DistributedScene::earliest_impact':
         'As `Scene.earliest_impact`; the same on all ranks.',
     'DistributedScene::load':
@@ -504,19 +496,19 @@ CONTRACTS = {
     'Scene::closest':
         'For each point the nearest triangle, or nothing when there is none within the largest distance and when the point is not finite. Takes about 1.4 µs for each of many points near a surface of 70,000 triangles, and 3.5 µs for those far away; longer for single points. Throws `Error` when the largest distance is negative or NaN, and for a signed distance when a surface is open.',
     'Scene::collision_free_step':
-        'A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of its distance at the start, `StepOptions.keep`; and the pair that ends it.\n\nA pair at distance d at the start keeps at least `keep` d. With separation s, a pair at distance d > s keeps at least s + `keep` (d - s). So a pair within the separation does not make the step 0, and one that parts does not end it. The exact step ends when the first pair is at the distance that it keeps. The returned step never exceeds the exact one, and is shorter by at most 2^-18 of it.\n\nElements that share a point at the start end the step there, unless they touch at rest: the vertices of the features that touch, as `ElementDistance` names them, all move by exactly the same vector. Such a pair does not limit the step: two objects that rest, or fixed vertices on a static object.\n\nOtherwise the step is positive. It is proven that also the positions from + t (to - from), computed in double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then the first that would touch. Pairs of more than `SceneOptions.max_exact_bits` can make it shorter.\n\nIgnores `ImpactOptions.max_time` and `skip_parting`. Throws `Error` when an option is out of its range.',
+        'A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of its distance at the start, `StepOptions.keep`; and the pair that ends it.\n\nA pair at distance d at the start keeps at least `keep` d. With separation s, a pair at distance d > s keeps at least s + `keep` (d - s). So a pair within the separation does not make the step 0, and one that parts does not end it. The exact step ends when the first pair is at the distance that it keeps. The returned step never exceeds the exact one, and is shorter by at most 2^-18 of it.\n\nElements that share a point at the start end the step there when the triangles around this point cut into each other just after the start, and when one leaves a face through the inner side on which it lies flat. Otherwise they end the step where they touch again, and not at all while they slide in one plane or move by the same vector. docs/guarantees.md has the exact conditions.\n\nOtherwise the step is positive. It is proven that also the positions from + t (to - from), computed in double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then the first that would touch. Pairs of more than `SceneOptions.max_exact_bits` can make it shorter.\n\nIgnores `ImpactOptions.max_time` and `skip_parting`. A step that is many times longer than the objects takes about the time of a short one, which is a few times that of `detect` for a short step. Throws `Error` when an option or a limit is out of its range.',
     'Scene::collision_free_steps':
-        'A safe part of the step for each object, ascending, so that one pair does not stop all objects. Objects of one island move by the same part. After each island has moved by its part, or by less, nothing has crossed and every pair keeps its share as for `collision_free_step`; the islands can move in any order, or at the same time at different speeds.\n\nTwo objects that move are in one island unless every two of their elements are so far apart that what both move towards each other cannot use up their room. Objects that do not move have the step 1 and connect nothing. Takes longer than `collision_free_step`, because no time bounds the search. Throws `Error` as that function does.',
+        'A safe part of the step for each object, ascending, so that one pair does not stop all objects. Objects of one island move by the same part. After each island has moved by its part, or by less, nothing has crossed and every pair keeps its share as for `collision_free_step`; the islands can move in any order, or at the same time at different speeds.\n\nTwo objects that move are in one island unless every two of their elements are so far apart that what both move towards each other cannot use up their room. Objects that do not move have the step 1 and connect nothing. Takes longer than `collision_free_step`. A call that `limits` end returns one island of all objects that move. Throws `Error` as that function does.',
     'Scene::contains':
         'ascending',
     'Scene::detect':
         'Finds every contact of the requested kinds: intersections, penetration and pairs within the margins at the current positions, and continuous contacts within the step. The request defaults to the options of the scene. Time depends on the objects that moved and on the overlapping volumes; no memory is allocated after the largest step so far. An empty list of contacts means that nothing touches, unless `DetectResult.untested` says that there was nothing to test. Throws `Error` when the request is out of range.',
     'Scene::distance':
-        'The nearest features of two objects, as a pair of the listing of features, or nothing when one of them has no finite triangle. Of several pairs at the same distance, the first one in the order of `DetectResult.proximity_pairs`. When the surfaces intersect, the distance is 0, and the pair is the first point of their first contact: then an edge can be paired with a face. `object_a` is the smaller object. An object inside another one has the distance of the surfaces. Triangles with a vertex that is not finite do not count. A distance that no double holds is infinite. Starts at the result of the last call for these objects, so that objects that move little take less time. Objects that are far from each other need few decisions, unless their coordinates are so coarse that many elements are equally near. Throws `Error` when both are the same.',
+        'The nearest features of two objects, as a pair of the listing of features, or nothing when one of them has no finite triangle, edge or point. Of several pairs at the same distance, the first one in the order of `DetectResult.proximity_pairs`. When the surfaces intersect, the distance is 0, and the pair is the first point of their first contact: then an edge can be paired with a face. `object_a` is the smaller object. An object inside another one has the distance of the surfaces. Triangles with a vertex that is not finite do not count. A distance that no double holds is infinite. Starts at the result of the last call for these objects, so that objects that move little take less time. Objects that are far from each other need few decisions, unless their coordinates are so coarse that many elements are equally near. Throws `Error` when both are the same.',
     'Scene::distances':
         'The same for all pairs of objects that `detect` would test and that are within `max_distance`, closed: one pair of features for each, ordered by objects. Throws `Error` when the distance is negative or NaN.',
     'Scene::earliest_impact':
-        'The first continuous contact with `SceneOptions.impact`, or nothing when nothing touches within the step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that can only touch later, so with many contacts it is faster than `detect`. Does not change `result` and `verify`.',
+        'The first continuous contact with `SceneOptions.impact`, or nothing when nothing touches within the step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that can only touch later, so with many contacts it is faster than `detect`. Does not change `result` and `verify`. A call that `limits` end returns nothing: ask `StepLimits.stop`, or call `max_step`. Throws `Error` when a limit is out of its range.',
     'Scene::for_each_vertex':
         'Calls `function(object, vertex, weight)` for each vertex of a pair: first those of a, then those of b. The weights are the barycentric coordinates of the closest or touching points, positive for a and negative for b. So their sum is 0, but for rounding, and the sum of weight times position is the vector from the point of b to the point of a. Of a `Contact`, the points are the mean of its points in both triangles, or the centres of the triangles when `SceneOptions.contact_points` is off or a triangle is flat. O(1). Throws `Error` as `vertices_of` does; of a `Contact` also when it is not of `result`.',
     'Scene::inside':
@@ -524,7 +516,7 @@ CONTRACTS = {
     'Scene::keep_result':
         'Takes the memory of this result out of the scene: its spans stay valid as long as what is returned. `result` is then empty, as before the first step, and the next `detect` takes new memory; events go on. Call it before the next `detect` to keep a result without a copy of its own. O(size of the lists), because the scene keeps copies, from which `detect` takes the contacts of objects that do not move.',
     'Scene::max_step':
-        'The largest safe part of the step, 0 to 1: the time of `earliest_impact` and its pair, or 1 without an impact. Never later than the true first contact. Bodies that already cut through each other at the start do not shorten it.',
+        'The largest safe part of the step, 0 to 1, and the pair that ends it: the time of the first impact, or 1 without one. Never later than the true first contact. Elements that touch at the start end it there only where their surfaces meet in the step, as for `collision_free_step`. Elements within the separation at the start do not end it when they part, as with `ImpactOptions.skip_parting`. Bodies that already cut through each other at the start do not shorten it. Throws `Error` as `earliest_impact` does.',
     'Scene::name':
         'ascending',
     'Scene::objects':
@@ -560,7 +552,7 @@ CONTRACTS = {
     'Scene::set_static':
         'Changes `ObjectOptions.is_static`, O(1). Call it with false to move a static object.',
     'Scene::set_transform':
-        'Places the positions that were last set, or those of `add`. Replaces earlier transforms and translations. O(1) when only the translation changes, O(n) otherwise.',
+        'Places the positions that were last set, or those of `add`. Replaces earlier transforms and translations. O(1) when only the translation changes, O(n) otherwise. A negative determinant mirrors the object: curves and manifolds see its triangles turned over, so that they keep their outer side. Throws `Error` for a solid when the matrix is singular. The signs of determinants are exact.',
     'Scene::set_user_data':
         'Changes `ObjectOptions.user_data`, O(1).',
     'Scene::set_vertex_groups':
@@ -687,10 +679,10 @@ CONTRACTS = {
         'Whether all of `kinds` are in the set.',
     'cos_turns':
         'See `cos_turns` in supple/trigonometry.hpp.',
-    'count_leaves':
-        'The number of leaves that `for_each_leaf` visits.',
     'count_inward_triangles':
         'The number of triangles that face inwards, into what `Scene.inside` finds inside. A solid (`ObjectOptions.solid`) takes them as if they faced outwards: each connected part by the exact sign of its volume, and holes the other way. 0 where the surface bounds no solid (`fault_of_solid`). A part of volume 0 has none. The vertex ids must be valid. O(n log n).',
+    'count_leaves':
+        'The number of leaves that `for_each_leaf` visits.',
     'count_neighbour_pairs':
         'The pairs of triangles with a common vertex, which `Neighbours.skip` does not test. O(n log n).',
     'cross':
@@ -714,7 +706,7 @@ CONTRACTS = {
     'feature_kinds':
         'The kinds of element a and of element b.',
     'find_first_difference':
-        'Compares two recordings, without measured times and file-specific text. Returns nothing when they are equal. Positions and other lengths may differ by `tolerance` ≥ 0 in each coordinate; 0 compares bits.',
+        'Compares two recordings, without measured times and file-specific text, and without counts of work when their numbers of ranks differ. Returns nothing when they are equal. Positions and other lengths may differ by `tolerance` ≥ 0 in each coordinate; 0 compares bits.',
     'first_contact_by_algebra':
         'Decides the same question by exact algebra, for checking: Sturm sequences of polynomials with integer coefficients of any size. It shares no code with `first_impact` or `Scene.detect`, at any separation. Throws `Error` when `min_separation` is negative or not finite.\n\nTakes about 0.5 µs for most elements that stay apart, 0.1 to 1 ms for others, and seconds or more when coordinates range from 1e-300 to 1e300. It always ends.',
     'first_impact':
@@ -740,7 +732,7 @@ CONTRACTS = {
     'list_of_words':
         'All words of an enumeration in one text, such as `aabb, sphere`.',
     'load_mesh':
-        'Reads an OBJ, OFF, PLY (ASCII, little or big endian, float or double) or STL (ASCII or binary) file. The extension, in either case, selects the format.\n\nCoordinates keep the precision of the file, and ids keep its order: vertex i is the i-th vertex of the file. Texture and normal ids are ignored. Unused vertices stay. The lines of an OBJ file become edges, n - 1 for a polyline of n vertices, and its points become points; so do the edges of a PLY file. A face of two corners is an edge, and a face of one corner is a point, but not in STL. STL has no ids: corners with equal coordinates become one vertex, numbered by first use.\n\nA polygon of n corners becomes n - 2 triangles, in file order, that cover the inside of its outline once. They are the fan around its first corner where this fan stays inside, as in convex polygons. The outline is seen along the axis in which its area is the largest; in this view the cut is exact, also for corners on one line and for corners and edges that coincide. The triangles of an outline that crosses itself overlap, or some of them turn the other way; `TriangleMesh.polygons` counts these polygons, and those that are not flat.\n\nThrows `Error`; the message names the file, the line or byte, the value, and the allowed values.',
+        'Reads an OBJ, OFF, PLY (ASCII, little or big endian, float or double) or STL (ASCII or binary) file. The extension, in either case, selects the format.\n\nCoordinates keep the precision of the file, and ids keep its order: vertex i is the i-th vertex of the file. Texture and normal ids are ignored. Unused vertices stay. The lines of an OBJ file become edges, n - 1 for a polyline of n vertices, and its points become points; so do the edges of a PLY file. A face of two corners is an edge, and a face of one corner is a point, but not in STL. Faces of OFF and PLY without corners are left out. STL has no ids: corners with equal coordinates become one vertex, numbered by first use.\n\nA polygon of n corners becomes n - 2 triangles, in file order, that cover the inside of its outline once. They are the fan around its first corner where this fan stays inside, as in convex polygons. The outline is seen along the axis in which its area is the largest; in this view the cut is exact, also for corners on one line and for corners and edges that coincide. The triangles of an outline that crosses itself overlap, or some of them turn the other way; `TriangleMesh.polygons` counts these polygons, and those that are not flat.\n\nThrows `Error`; the message names the file, the line or byte, the value, and the allowed values.',
     'make_box':
         'Axis-aligned box from -size/2 to size/2. Each face is a grid of `resolution` ≥ 1 squares per side. Faces share the vertices on edges; 12 resolution² triangles.',
     'make_cloth':

@@ -19,7 +19,6 @@ from ._generated import (
     Integrator,
     Neighbours,
     ObjectOctreeBuild,
-    PenetrationDepths,
     ProximityListing,
     RegionSphereTest,
     SphereFit,
@@ -180,8 +179,8 @@ class SceneOptions(TypedDict, total=False):
     'Continuous contacts: list all, or the first of each vertex, edge and face (first)'
     manifolds: bool | np.bool_
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
-    depths: PenetrationDepths | Literal['all', 'deepest']
-    'Penetration: list all vertices inside solid objects with their depths, or only the deepest one of each pair (deepest), which takes less time'
+    curves: bool | np.bool_
+    'Penetration: also list the curves in which surfaces intersect, with what they enclose, a normal and a depth'
     max_exact_bits: Whole
     'Limit of exact arithmetic, which hostile coordinates make slow: the bits from the highest of the largest coordinate to the last of the finest. Elements of more bits that floating point cannot decide are continuous contacts within tolerance; for other contacts, objects of more bits are an error. 2098 means no limit'
     threads: Whole
@@ -484,8 +483,8 @@ class SimulationOptions(TypedDict, total=False):
     'Continuous contacts: list all, or the first of each vertex, edge and face (first)'
     manifolds: bool | np.bool_
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
-    depths: PenetrationDepths | Literal['all', 'deepest']
-    'Penetration: list all vertices inside solid objects with their depths, or only the deepest one of each pair (deepest), which takes less time'
+    curves: bool | np.bool_
+    'Penetration: also list the curves in which surfaces intersect, with what they enclose, a normal and a depth'
     max_exact_bits: Whole
     'Limit of exact arithmetic, which hostile coordinates make slow: the bits from the highest of the largest coordinate to the last of the finest. Elements of more bits that floating point cannot decide are continuous contacts within tolerance; for other contacts, objects of more bits are an error. 2098 means no limit'
     threads: Whole
@@ -567,8 +566,8 @@ class DetectRequest(TypedDict, total=False):
     'Continuous contacts: list all, or the first of each vertex, edge and face (first)'
     manifolds: bool | np.bool_
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
-    depths: PenetrationDepths | Literal['all', 'deepest']
-    'Penetration: list all vertices inside solid objects with their depths, or only the deepest one of each pair (deepest), which takes less time'
+    curves: bool | np.bool_
+    'Penetration: also list the curves in which surfaces intersect, with what they enclose, a normal and a depth'
     min_separation: Number
     'Continuous contacts: distance at which two elements count as touching'
     exact: bool | np.bool_ | Literal['report', 'exact']
@@ -598,6 +597,8 @@ class StepStats(TypedDict):
     'Time of the exact stage, which decides the candidates'
     penetration_seconds: float
     'Time to find vertices inside solids, contained parts and curves'
+    manifold_seconds: float
+    'Time to find manifolds and their ids'
     sort_and_events_seconds: float
     'Time to sort contacts and to find events'
     total_seconds: float
@@ -1009,7 +1010,7 @@ class FoundImpact(Record):
 
 
 class IntersectionCurve(Record):
-    "A curve in which two objects intersect, or one object intersects itself: the contacts that are linked by common points. A point links two contacts when it lies on the same features of both objects, for example on an edge of a and a face of b. So the links are exact.\n\nA closed or an open curve runs from point to point, a contact between each two, in the direction n_b x n_a of the normals of the triangles. A closed one starts with its smallest contact. A branched one has ascending contacts and no points.\n\nOn each of two surfaces, a curve encloses the vertices that it cuts off: those on the smaller of the two sides, by the number of vertices, and of equal sides the one that is behind. It encloses nothing where it does not divide the connected part of the surface, and where a vertex makes the sides ambiguous. On a curve of an object with itself, side a has the smaller triangle of the curve's smallest contact. See Baraff, Witkin and Kass, Untangling Cloth, 2003.\n\n`normal` and `depth` say how a leaves b. They concern two parts: on each surface, the triangles of the curve's contacts and those around the vertices behind it. These are the vertices on the side of the curve that is lower along the direction of its area for a, and higher for b. They are the enclosed vertices where the surface is about level there, and where this side is the larger one and has more vertices than 16 for each contact of the curve and than four times the vertices of the surface divided by the curves of the two objects: so the time is in proportion to contacts, vertices and what is enclosed. The depth along a direction is the longest way, in this direction, from a point of part a to a point of part b straight ahead. So this move brings part a past part b, and a shorter one does not. It is at most the smallest move in this direction after which two convex bodies do not overlap. Triangles parallel to the direction have nothing ahead, and triangles that touch only beside each other are not ahead of each other: sides that slide past each other do not count. A direction in which no point of a has one of b ahead counts only where all are such. Where a body fits into another one so that the curve goes only through its own vertices, no vertex is behind the curve, and the depth is that of the touching faces: 0.\n\n`normal` is the direction with the least depth of these: the outward normals of faces of b, and the reverse of those of a, on which at least half of the curve lies; and the direction of the area, for other than closed curves that of their segments. Where there are none, it is the mean direction of the contacts' normals by length. Contacts in which one triangle is nowhere behind the other only touch; their faces count where the curve has no other contacts. Where several directions have the same depth (within 2^-36), it is their mean, so that a symmetric curve has a symmetric normal; only where they cancel out, it is the first of them. To exchange a and b reverses the normal."
+    "A curve in which two objects intersect, or one object intersects itself: the contacts that are linked by common points. A point links two contacts when it lies on the same features of both objects, for example on an edge of a and a face of b. So the links are exact.\n\nA closed or an open curve runs from point to point, a contact between each two, in the direction n_b x n_a of the normals of the triangles. A closed one starts with its smallest contact. A branched one has ascending contacts and no points.\n\nOn each of two surfaces, a curve encloses the vertices that it cuts off: those on the smaller of the two sides, by the number of vertices, and of equal sides the one inside the other object. It encloses nothing where it does not divide the connected part of the surface, and where a vertex makes the sides ambiguous. On a curve of an object with itself, side a has the smaller triangle of the curve's smallest contact. See Baraff, Witkin and Kass, Untangling Cloth, 2003.\n\n`normal` and `depth` say how a leaves b: after a moves by `depth` along `normal`, no vertex of the contact is inside the other object, and two convex objects have no common inside. So the depth is at least that of the deepest vertex of the contact, and at most the overlap of two convex objects along the normal.\n\nThe contact is what is behind the curve on each surface: the triangles of the curve's contacts, and those around the vertices that are behind the other surface and that edges without contacts connect to the curve. Exact signs decide what is behind, so vertices that are on the other surface hide nothing. Where a part goes through the other object, so that it is in front again beyond another curve, its far end belongs to the contact, too, unless it has many more vertices than the curve has contacts. Where the other object is not solid, or the same one, the contact has at most 64 + 16 n + n² / 4 vertices of a side for n contacts, those nearest to the curve by edges. O(n log n) for n triangles of the contact, and the rays.\n\nThe depth along a direction is the longest way, in this direction, from a point of a to a point of b straight ahead; rays from vertices inside add the triangles through which these leave. Triangles parallel to the direction have nothing ahead, and triangles that touch only beside each other are not ahead of each other: sides that slide past each other do not count. A direction in which nothing is ahead counts only where all are such; the depth is then 0, as for surfaces that only touch.\n\n`normal` is the direction with the least depth of these: the outward normals of the faces of b, and the reverse of those of a, on which the curve lies (of more than twelve normals, those of at least an eighth of the curve); the direction of the curve's area, for other than closed curves that of their segments; and the shortest moves out of two or three of these faces at once, where no face alone leads out of a corner as soon. Where there are none, it is the mean direction of the contacts' normals by length. Contacts in which one triangle is nowhere behind the other only touch; their faces count where the curve has no other contacts. Of several directions with the same depth (within 2^-36), it is the one with the largest x, then y, then z component, by magnitude. So a small move changes the depth by little, but can change the normal. To exchange a and b reverses the normal, unless opposite directions have the same depth."
 
     __slots__ = ()
     a: np.uint32
@@ -1095,7 +1096,7 @@ class ListedRayHit(Record):
 
 
 class Manifold(Record):
-    'A patch of contacts of two objects, or of one object with itself, reduced to what a rigid body needs: one normal, one depth, and at most four points that span it. With penetration, each `IntersectionCurve` is a patch. Two objects without a curve have the patches of their proximity pairs: a patch grows from the nearest pair that is in no patch yet over all pairs in no patch that are linked and whose normals are within 45 degrees of its normal. Two pairs are linked when they have vertices in common, or vertices of one triangle, on either object. A patch also replaces linked pairs whose elements are as far apart along its normal as the nearest pair: for example an edge of a floor and an edge of the side of a box that stands on it.\n\nThe points are the deepest one, and those that are farthest from it, from the line, and outside the triangle of those before. Points nearer than 2^-10 of the size of the patch to what is spanned already are left out, so an edge has two points and a vertex has one. They run counter-clockwise, seen from a.\n\nA manifold keeps its id while it stays. Of all manifolds of two objects in two steps that follow each other, those with most features in common are the same (a feature is a vertex, edge or triangle of one object), then those whose points are nearest to each other, then the first ones. So the only manifold of two objects stays as long as they have one; when a patch splits, one part stays and the others begin; when patches merge, one stays and the others end. The points of a manifold that stays are matched in the same way. A step without manifolds ends all.'
+    'A patch of contacts of two objects, or of one object with itself, reduced to what a rigid body needs: one normal, one depth, and at most four points that span it. With penetration, each `IntersectionCurve` is a patch. Two objects without a curve have the patches of their proximity pairs: a patch grows from the nearest pair that is in no patch yet over all pairs in no patch that are linked and whose normals are within 45 degrees of its normal. Two pairs are linked when they have vertices in common, or vertices of one triangle, on either object. A patch also replaces linked pairs whose elements are as far apart along its normal as the nearest pair: for example an edge of a floor and an edge of the side of a box that stands on it.\n\nWhere objects touch, or are as near as coordinates are rounded (2^-40 of their size), the points of a pair give no direction. The surfaces around the points do: the direction in which a plane lies between both, which is the normal of a face where there is such a face. So a box on a floor has the normal of the floor, whichever of them is a. Surfaces that lie in the plane keep the side to which they look, closed ones first. A pair where one surface fits into the other one has the normal of each face that keeps them apart, so a box in a corner has a patch for each wall.\n\nPairs know nothing of depth. Two objects whose surfaces cut through each other have no manifold of pairs, and a patch has none when the way between the points of its nearest pair starts inside a solid. So no manifold moves a body deeper. Request penetration, too, where objects may overlap.\n\nThe points are the deepest one, and those that are farthest from it, from the line, and outside the triangle of those before. Of several deepest ones (within 2^-40), the first is the farthest from the middle of the patch. Points nearer than 2^-10 of the size of the patch to what is spanned already are left out, so an edge has two points and a vertex has one. They run counter-clockwise, seen from a.\n\nA manifold keeps its id while it stays. Of all manifolds of two objects in two steps that follow each other, those with most features in common are the same (a feature is a vertex, edge or triangle of one object), then those whose points are nearest to each other, then the first ones. So the only manifold of two objects stays as long as they have one; when a patch splits, one part stays and the others begin; when patches merge, one stays and the others end. The points of a manifold that stays are matched in the same way. A step without manifolds ends all.'
 
     __slots__ = ()
     a: np.uint32
@@ -1213,7 +1214,7 @@ class Penetration(Record):
 
 
 class PenetrationDifference(Record):
-    'A vertex of a on which `Scene.verify` and the last `Scene.detect` differ: inside b, on its surface, or the smallest vertex of a contained part.'
+    'A vertex of a on which `Scene.verify` and the last `Scene.detect` differ: inside b, on its surface, the smallest vertex of a contained part, or inside b within a curve.'
 
     __slots__ = ()
     object_a: np.uint32
@@ -1233,7 +1234,7 @@ class PenetrationDifference(Record):
 
 
 class PenetrationGroup(Record):
-    'The vertices of a that are inside b or on its surface: ranges of `DetectResult.penetrations` and of `DetectResult.vertices_on_surface`, each with ascending vertices. Only pairs with such a vertex are listed. The vertices of b inside a are a group of their own. With `PenetrationDepths.deepest`, only one of the vertices inside is listed.'
+    'The vertices of a that are inside b or on its surface: ranges of `DetectResult.penetrations` and of `DetectResult.vertices_on_surface`, each with ascending vertices. Only pairs with such a vertex are listed. The vertices of b inside a are a group of their own.'
 
     __slots__ = ()
     a: np.uint32
@@ -1285,7 +1286,7 @@ class ProximityDifference(Record):
 
 
 class ProximityPair(Record):
-    'Two features or elements whose distance is at most the sum of the margins of their objects, or twice the margin within one object. Exact arithmetic decides this on the given coordinates, and which features hold the closest points; `distance.hpp` says which where several do. The sum is rounded to double once.\n\nWithin one object, elements that share a vertex id are left out. So features that share one occur only through other elements. A vertex stands before an edge or a face there, and the smaller of two vertices or edges stands first.'
+    'Two features or elements whose distance is at most the sum of the margins of their objects, or twice the margin within one object. Exact arithmetic decides this on the given coordinates, and which features hold the closest points; `distance.hpp` says which where several do. The sum is rounded to double once.\n\nAn edge and a face are a pair at distance 0 where the inside of the edge crosses the inside of the face, with its ends on different sides of the plane: surfaces that cut through each other are near, also away from all other edges and vertices. Each other point of an edge and a face is in a pair of a vertex and the face or of two edges at distance 0. So each point is named once. Such a pair is the same in both listings and for all margins. `ElementKinds.vertex_face` and `edge_edge` leave it out.\n\nWithin one object, elements that share a vertex id are left out. So features that share one occur only through other elements. A vertex stands before an edge or a face there, and the smaller of two vertices or edges stands first.'
 
     __slots__ = ()
     object_a: np.uint32
