@@ -20,8 +20,13 @@ std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
 }
 
 TEST(DepthProperties, OfRandomSolids) {
+#ifdef NDEBUG
+  constexpr std::uint64_t pairs = 2000;
+#else
+  constexpr std::uint64_t pairs = 200;
+#endif
   const std::uint64_t first = number_of("SUPPLE_DEPTH_SEED", 1),
-                      count = number_of("SUPPLE_DEPTH_PAIRS", 2000);
+                      count = number_of("SUPPLE_DEPTH_PAIRS", pairs);
   std::uint64_t unsteady = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     RandomNumbers random(seed);

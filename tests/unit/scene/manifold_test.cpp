@@ -437,7 +437,8 @@ TEST(Manifold, IsTheSameForAnyNumberOfThreadsAndSpansItsPatch) {
         found.insert(found.end(), result.manifolds.begin(), result.manifolds.end());
         found_points.insert(found_points.end(), result.manifold_points.begin(), result.manifold_points.end());
       }
-      EXPECT_GT(found.size(), 100u);
+      // Bodies that cut through each other have no manifolds of pairs.
+      EXPECT_GT(found.size(), kinds == ContactKinds::proximity ? 8u : 100u);
       if (threads == 1) {
         manifolds = found;
         points = found_points;

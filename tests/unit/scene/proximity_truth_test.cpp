@@ -118,6 +118,7 @@ TEST_F(ProximityTruth, EveryPairOfElementsAndOfFeatures) {
 
     double smallest = INFINITY;
     for (const auto& [kind, list] : elements) {
+      if (kind == "EF" || kind == "FE") continue;  // the truth has no edges that go through faces
       for (const auto& [pair, distance] : list) smallest = std::min(smallest, distance);
     }
     const double expected_smallest = std::stod(expected["smallest"]["distance"].get<std::string>());
