@@ -129,7 +129,7 @@ Settings read_settings(Settings settings, const SceneOptions& scene, bool of_sim
 
 double estimated_memory(const SceneView& show, const Settings& settings) {
   // In bytes. Small leaves have as many nodes as triangles.
-  constexpr double of_object = 20'000, of_vertex = 400, of_triangle = 400, of_leaf = 4'000;
+  constexpr double of_object = 24'000, of_vertex = 400, of_triangle = 400, of_leaf = 4'000;
   double bytes = 0;
   visit_repeated(
       show, settings.restart.objects.value_or(show.objects.size()), [&](const ViewedObject& object) {

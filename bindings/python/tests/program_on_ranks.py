@@ -185,8 +185,9 @@ def random_scenes():
             both = distributed.earliest_impact(), one.earliest_impact()
             assert_same_record(*both)
             for name in "max_step", "collision_free_step":
-                step_, limit = getattr(distributed, name)()
+                step_, limit, stopped = getattr(distributed, name)()
                 assert step_ == getattr(one, name)().step, name
+                assert not stopped
                 assert_same_record(limit, getattr(one, name)().limit)
             for most in (0.5,), ():
                 distances = distributed.distances(*most)

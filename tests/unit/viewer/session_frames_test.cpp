@@ -66,6 +66,7 @@ TEST(ViewerFrames, NormalsAreThoseOfTheLibrary) {
 TEST(ViewerFrames, ProximityPairsPenetrationsAndCurvesAreThoseOfTheLibrary) {
   SceneView show = touching_balls();
   show.simulation.scene.contacts = ContactKinds::proximity | ContactKinds::penetration;
+  show.simulation.scene.curves = true;
   for (ViewedObject& object : show.objects) {
     object.options.margin = 0.02;
     object.options.solid = true;

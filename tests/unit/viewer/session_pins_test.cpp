@@ -48,6 +48,7 @@ class PinnedPage : public TestPage {
 SceneView meeting_balls(ContactKinds contacts) {
   SceneView show;
   show.simulation.scene.contacts = contacts;
+  show.simulation.scene.curves = contains(contacts, ContactKinds::penetration);
   show.objects = {test_ball("left", {}), test_ball("right", {1.7, 0.1, 0}), test_ball("far", {0, 8, 0})};
   for (ViewedObject& object : show.objects) {
     object.options.margin = 0.2;
