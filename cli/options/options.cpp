@@ -38,10 +38,7 @@ namespace {
 SimulationOptions options_of(const std::vector<std::string>& inputs) {
   SimulationOptions options{.scene = default_scene_options()};
   if (inputs.empty()) return options;
-  if (is_recording(inputs.front())) {
-    options.scene = Recording(inputs.front()).header().scene;
-    options.scene.curves = true;
-  }
+  if (is_recording(inputs.front())) options.scene = Recording(inputs.front()).header().scene;
   if (is_scene_file(inputs.front())) options = read_scene_options(inputs.front());
   return options;
 }

@@ -65,8 +65,8 @@ void read_options(const InputFile& file, const std::string& group, std::uint32_t
       [&](const auto& field, auto& value) {
         using Value = std::remove_cvref_t<decltype(value)>;
         const std::string name = attribute_in_version(field.key, version);
-        if (field.is_of_machine || (version < format_version && !file.has_attribute(group, name.c_str())))
-          return;
+        const bool may_miss = version < format_version || name == "curves";  // a later option
+        if (field.is_of_machine || (may_miss && !file.has_attribute(group, name.c_str()))) return;
         if constexpr (std::is_same_v<Value, bool>) {
           read_option(file, group, name, value, field.truth_words, version);
         } else if constexpr (Worded<Value> || std::is_same_v<Value, std::optional<RootCube>>) {
@@ -143,6 +143,7 @@ RecordingHeader read_header(const InputFile& file, std::uint32_t version,
                             const std::function<const InputFile&(std::size_t)>& file_of) {
   RecordingHeader header;
   header.time_step = file.number("/", "time_step");
+  header.scene.curves = true;  // without the attribute, penetration had them
   read_options(file, "/", version, header.scene);
   header.scene_file = file.text_dataset("scene_file");
   if (file.has_attribute("/", "ranks")) header.ranks = file.count("/", "ranks");

@@ -80,13 +80,13 @@ class Options(ProgramTest):
         of_continuous = ("min_separation", "undecided", "max_time", "skip_parting", "continuous_listing", "solid")
         of_proximity = ("margin", "proximity_listing", "solid")
         of_intersections = ("neighbours",)
-        of_patches = ("manifolds",)
+        of_patches = ("manifolds", "curves")
         of_triangles = ("contact_points", "colliding_vertices", "sphere_fit", "descent", "lazy_refit")
         for fixed, without in (
             (octree | continuous, (*of_triangles, *of_proximity, *of_intersections, *of_patches)),
             (octree | intersection, (*of_continuous, *of_proximity, *of_patches, "element_kinds")),
             (intersection, (*of_continuous, *of_proximity, *of_patches, "element_kinds", *with_octree)),
-            (proximity, (*of_continuous, *of_triangles, *of_intersections, *with_octree)),
+            (proximity, (*of_continuous, *of_triangles, *of_intersections, *with_octree, "curves")),
             (penetration, ("lazy_refit", *(set(of_continuous + of_proximity) - {"solid"}), "element_kinds", *with_octree)),
         ):
             others = {key: other for key, other in (self.others() | fixed).items() if key not in without}

@@ -381,7 +381,7 @@ def other_calls_on_one_rank():
         (lambda: scene.detect(contacts="proximity" if is_last else "intersection"), "contacts is proximity"),
         (lambda: scene.distances(2 if is_last else 1), "max_distance is 2"),
         (lambda: scene.closest([[0, 0, 0]], mask=1 + is_last), "mask is 2"),
-        (lambda: scene.max_step() if is_last else scene.detect(), "call is earliest_impact"),
+        (lambda: scene.max_step() if is_last else scene.detect(), "call is max_step"),
         (lambda: supple.DistributedScene(WORLD, cluster_triangles=100 + is_last), "cluster_triangles is 101"),
     ):
         expect_on_all(f"; on rank {last}, {difference}; give all ranks the same", call)
