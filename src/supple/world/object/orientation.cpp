@@ -74,7 +74,7 @@ Orientation::Orientation(std::vector<Triangle> triangles, const PositionsView& p
   for (const auto& [v, w, x] : triangles_) sets.join(sets.join(v, w), x);
   const auto root_of = [&](std::uint32_t t) { return sets.root(triangles_[t][0]); };
   std::iota(order_.begin(), order_.end(), 0u);
-  std::ranges::stable_sort(order_, {}, root_of);
+  std::ranges::sort(order_, {}, [&](std::uint32_t t) { return std::pair(root_of(t), t); });
   for (std::uint32_t i = 0; i < order_.size(); ++i) {
     if (i == 0 || root_of(order_[i]) != root_of(order_[i - 1])) parts_.push_back({i, i});
     ++parts_.back().last;
