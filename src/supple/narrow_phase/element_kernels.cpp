@@ -151,30 +151,24 @@ HWY_INLINE std::uint64_t neighbours_in_group(const MovingBoxBlock& ones, std::si
   return bits;
 }
 
-/// What a test of blocks needs besides them.
-struct BlockTest {
-  bool skips_neighbours = false, at_rest = false;
-  float shrinks_by = 0;  ///< on all sides of the boxes of one block
-};
-
 /// For each of `ones`, the bits of a group of `others` in `some_others`, from `first` on, that are not apart
 /// from it; without those that share a vertex with it if `skips_neighbours`. Returns bits of the ones that
 /// have some.
 template <int corners_of_one, int corners_of_other>
 HWY_NOINLINE std::uint64_t meeting_masks(const MovingBoxBlock& ones, std::uint64_t some_ones,
                                          const MovingBoxBlock& others, std::uint64_t some_others,
-                                         std::size_t first, const BlockTest& how, std::uint64_t* masks) {
+                                         std::size_t first, bool skips_neighbours, bool at_rest,
+                                         std::uint64_t* masks) {
   std::uint64_t found = 0;
   for (; some_ones != 0; some_ones &= some_ones - 1) {
     const auto one = static_cast<std::size_t>(std::countr_zero(some_ones));
     MovingBox box;
     for (std::size_t side = 0; side < 6; ++side) {
       box.start[side] = ones.start[side][one];
-      if (!how.at_rest) box.end[side] = ones.end[side][one];
+      if (!at_rest) box.end[side] = ones.end[side][one];
     }
-    if (how.shrinks_by > 0) shrink(box, how.shrinks_by);
-    std::uint64_t hits = meeting_group(box, others, how.at_rest, first) & some_others;
-    if (how.skips_neighbours && hits != 0)
+    std::uint64_t hits = meeting_group(box, others, at_rest, first) & some_others;
+    if (skips_neighbours && hits != 0)
       hits &= ~neighbours_in_group<corners_of_one, corners_of_other>(ones, one, others, first);
     masks[one] = hits;
     found |= std::uint64_t{hits != 0} << one;
@@ -191,6 +185,8 @@ class ElementTests {
         b_(b),
         part_a_{0, part.latest, {}, part.kinds},
         part_b_(part),
+        part_of_crossing_{part.crossing_separation, part.latest, part.offset, part.kinds},
+        crossing_side_(same_object && part.crossing_separation == 0 ? cache.a : cache.crossing),
         at_rest_(are_at_rest(a, b, part)),
         same_object_(same_object),
         cache_(cache),
@@ -200,7 +196,6 @@ class ElementTests {
 
   void test(const LeafPair& leaves) {
     same_leaf_ = same_object_ && leaves.begin_a == leaves.begin_b;
-    reach_ = 0;
     box_a_ = moving_box(child_boxes(a_, leaves.leaf_a / node_width, at_rest_), leaves.leaf_a % node_width,
                         part_a_);
     box_b_ = moving_box(child_boxes(b_, leaves.leaf_b / node_width, at_rest_), leaves.leaf_b % node_width,
@@ -230,13 +225,12 @@ class ElementTests {
       if (!same_leaf_) match<Kind::face_vertex>(faces_a, vertices_b);
     }
     if (part_b_.kinds != ElementKinds::vertex_face) match<Kind::edge_edge>(edges_a, edges_b);
-    if (part_b_.crossing_reach < 0) return;
-    reach_ = part_b_.crossing_reach;
-    shrink(box_b_, reach_);
+    if (part_b_.crossing_separation < 0) return;
+    box_b_ = moving_box(child_boxes(b_, leaves.leaf_b / node_width, at_rest_), leaves.leaf_b % node_width,
+                        part_of_crossing_);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (box_b_.start[axis] > box_a_.start[axis + 3] || box_b_.start[axis + 3] < box_a_.start[axis]) return;
     }
-    shrink(box_a_, reach_);
     match<Kind::edge_face>(edges_a, faces_b);
     if (!same_leaf_) match<Kind::face_edge>(faces_a, edges_b);
   }
@@ -269,6 +263,9 @@ class ElementTests {
 
   template <Kind kind, class IdsA, class IdsB>
   void match(const Elements<IdsA>& all_a, const Elements<IdsB>& all_b) {
+    constexpr bool may_cross = kind == Kind::edge_face || kind == Kind::face_edge;
+    MovingBoxCache::Side& side_b = may_cross ? crossing_side_ : cache_.b;
+    const PartOfStep& part_b = may_cross ? part_of_crossing_ : part_b_;
     for (std::uint32_t first_a = all_a.range.begin; first_a < all_a.range.end; first_a += leaf_block) {
       const ElementRange range_a = all_a.block(first_a);
       const MovingBoxBlock& boxes_a = boxes_of(a_, all_a, cache_.a, range_a, part_a_);
@@ -279,7 +276,7 @@ class ElementTests {
       for (std::uint32_t first_b = half ? first_a : all_b.range.begin; first_b < all_b.range.end;
            first_b += leaf_block) {
         const ElementRange range_b = all_b.block(first_b);
-        const MovingBoxBlock& boxes_b = boxes_of(b_, all_b, cache_.b, range_b, part_b_);
+        const MovingBoxBlock& boxes_b = boxes_of(b_, all_b, side_b, range_b, part_b);
         const std::uint64_t some_b = near_leaf(box_a_, boxes_b, range_b);
         if (some_b == 0) continue;
         const bool with_later = half && first_a == first_b;
@@ -310,14 +307,15 @@ class ElementTests {
                                                                                    : 3;
     constexpr bool may_cross = kind == Kind::edge_face || kind == Kind::face_edge;
     constexpr int corners_b = (may_cross ? 5 : 4) - corners_a;
-    const BlockTest how{same_object_, at_rest_, reach_};
     std::array<std::uint64_t, leaf_block> masks;
     for (std::uint32_t i = 0; i < leaf_block; i += group) {
       const std::uint64_t some = some_others >> i & ((std::uint64_t{1} << group) - 1);
       if (some == 0) continue;
       tests_ += static_cast<std::uint64_t>(std::popcount(some_ones)) * group;
       std::uint64_t found = meeting_masks < one_is_b ? corners_b : corners_a,
-                    one_is_b ? corners_a : corners_b > (ones, some_ones, others, some, i, how, masks.data());
+                    one_is_b ? corners_a
+                             : corners_b >
+                                   (ones, some_ones, others, some, i, same_object_, at_rest_, masks.data());
       for (; found != 0; found &= found - 1) {
         const auto one = static_cast<std::uint32_t>(std::countr_zero(found));
         std::uint64_t hits = masks[one];
@@ -345,12 +343,12 @@ class ElementTests {
 
   const MovingView& a_;
   const MovingView& b_;
-  PartOfStep part_a_, part_b_;
+  PartOfStep part_a_, part_b_, part_of_crossing_;
+  MovingBoxCache::Side& crossing_side_;  ///< the boxes of b for crossings
   bool at_rest_, same_object_;
   MovingBoxCache& cache_;
   ElementPairBatches& batches_;
   bool same_leaf_ = false;
-  float reach_ = 0;  ///< by which the boxes are nearer than those that overlap
   MovingBox box_a_, box_b_;
   std::uint64_t tests_ = 0;
 };

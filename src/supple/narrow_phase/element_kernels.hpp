@@ -75,9 +75,9 @@ struct PartOfStep {
   float latest = 1;
   Vec3f offset{};
   ElementKinds kinds = ElementKinds::all;  ///< pairs of elements that are tested
-  /// For objects at rest: also tests edges against faces, and their boxes come this much nearer than the
-  /// separation before they overlap. Negative: does not.
-  float crossing_reach = -1;
+  /// For objects at rest: also tests edges against faces, with this separation of their boxes, which covers
+  /// only the rounding errors. Negative: does not.
+  float crossing_separation = -1;
 };
 
 /// Boxes of up to `leaf_block` elements of one kind at both ends of (a part of) a step: min x, y, z, max x,
@@ -100,11 +100,12 @@ struct MovingBoxCache {
     Kind vertices, edges, faces;
   };
   Side a, b;
+  Side crossing;     ///< those of b with the `crossing_separation`
   float latest = 1;  ///< of the `PartOfStep`
 
   MovingBoxCache() { clear(); }
   void clear() {
-    for (Side* const side : {&a, &b}) {
+    for (Side* const side : {&a, &b, &crossing}) {
       for (Kind* const kind : {&side->vertices, &side->edges, &side->faces})
         kind->first_elements.fill(~std::uint32_t{0});
     }
@@ -116,9 +117,9 @@ void moving_overlap_masks(std::span<const NodePair> pairs, const MovingView& a, 
                           const PartOfStep& part, std::uint64_t* masks);
 
 /// Adds all pairs of elements of the leaf pairs that may come within the separation of each other, by their
-/// boxes at both ends of the step; with a `crossing_reach` also the edges and faces whose boxes overlap. With
-/// `same_object`, skips pairs that share a vertex, adds each pair once, and faces are always b. Never misses
-/// a pair. Returns the number of box tests.
+/// boxes at both ends of the step; with a `crossing_separation` also the edges and faces whose boxes overlap.
+/// With `same_object`, skips pairs that share a vertex, adds each pair once, and faces are always b. Never
+/// misses a pair. Returns the number of box tests.
 ///
 /// Only elements near the box of the other leaf are tested: those of the side that has fewer, one at a time,
 /// against vectors of elements of the other side.

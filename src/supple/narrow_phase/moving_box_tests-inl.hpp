@@ -9,7 +9,6 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -106,17 +105,6 @@ HWY_INLINE MovingBoxArrays child_boxes(const MovingView& view, std::uint32_t nod
 
 HWY_INLINE MovingBoxArrays arrays_of(const MovingBoxBlock& block, bool at_rest) {
   return {block.start[0], at_rest ? nullptr : block.end[0], leaf_block};
-}
-
-/// Shrinks a box at rest by `reach` on all sides. Where the other box, or this one, has grown by at least
-/// that, they still overlap if they did before: sums are rounded monotonically, and the limit of the range
-/// stands for all that is beyond.
-HWY_INLINE void shrink(MovingBox& box, float reach) {
-  for (std::size_t side = 0; side < 6; ++side) {
-    float& bound = box.start[side];
-    if (!(bound > -greatest_bound && bound < greatest_bound)) continue;
-    bound = std::clamp(bound + (side < 3 ? reach : -reach), -greatest_bound, greatest_bound);
-  }
 }
 
 /// Whether a vector of boxes, from `first` on, is apart from `box` along the axis: on the same side at both

@@ -62,9 +62,8 @@ struct ObjectPairView {
   /// approach.
   bool any_parts = false;
   ElementKinds kinds = ElementKinds::all;  ///< for moving objects
-  /// Not negative, for objects at rest: edges and faces whose boxes overlap are candidates, too. At most the
-  /// separation without the slop of the placement.
-  float crossing_reach = -1;
+  /// For objects at rest: edges and faces whose boxes overlap are candidates, too.
+  bool with_crossings = false;
 
   /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.
   PartOfStep part_of_step() const {
@@ -72,7 +71,7 @@ struct ObjectPairView {
     const float latest_now = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
     const float until = latest_now < most ? std::max(latest_now, least) : 1;
     return {growth > 0 ? round_up(separation + growth * until) : separation, until, placement.offset, kinds,
-            crossing_reach};
+            with_crossings ? placement.slop : -1};
   }
   /// The same for two children, with the separation that `kept_share` asks for.
   PartOfStep part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b, int child_b) const;
@@ -146,7 +145,7 @@ class Traversal {
   void find_element_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats, Sink&& sink) {
     find_element_pairs(pair, root, stats, sink, [](bool, std::span<const ElementPair>) {});
   }
-  /// With a `crossing_reach`, also calls `crossing_sink(bool edge_is_of_a, std::span<const ElementPair>)`
+  /// With crossings, also calls `crossing_sink(bool edge_is_of_a, std::span<const ElementPair>)`
   /// with the edges and faces whose boxes overlap; within one object, the edge is always a.
   template <class Sink, class CrossingSink>
   void find_element_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats, Sink&& sink,

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <span>
 #include <utility>
 
 #include "contact/distance/edge_face_crossing.hpp"
-#include "core/float_rounding.hpp"
 #include "core/sort_once.hpp"
 #include "core/timer.hpp"
 
@@ -120,8 +118,7 @@ ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
   const double reach = reach_of_margins(a.margin, b.margin);
   ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, reach) : moving_pair_of(a.view, b.view, reach);
   pair.kinds = search_.kinds;
-  if (search_.kinds == ElementKinds::all)
-    pair.crossing_reach = round_down(std::min(reach, double{std::numeric_limits<float>::max()}));
+  pair.with_crossings = search_.kinds == ElementKinds::all;
   return pair;
 }
 
