@@ -19,7 +19,7 @@ namespace {
 
 using namespace supple;
 
-/// Of this thread; other programs on the machine do not count.
+/// The processor time of this thread: other programs on the machine do not count.
 double milliseconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

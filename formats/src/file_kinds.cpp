@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view from_modellers = "export it as glTF (.glb), FBX, OBJ or PLY";
 constexpr std::string_view from_animation = "export it as glTF (.glb) or FBX, or each frame as OBJ or PLY";
 constexpr std::string_view from_cad = "export its tessellated surface as 3MF, STL, OBJ or PLY";
-// Only for what meshio reads. Its .msh is Fluent's unless it is told otherwise.
+// Only for what meshio reads. It takes .msh for a file of Fluent unless an option names the format.
 constexpr std::string_view from_meshio =
     "convert it to VTK's format, for example by: meshio convert FILE out.vtu";
 constexpr std::string_view from_simulation =

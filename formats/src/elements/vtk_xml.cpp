@@ -31,7 +31,7 @@ class ByteSource {
   /// At most so many bytes are left.
   std::size_t left() const { return text_.size() - place_ + 2; }
 
-  /// Fewer bytes than asked for where there are no more.
+  /// Returns fewer bytes than the argument says where there are no more.
   std::string take(std::size_t count) {
     std::string bytes;
     if (!is_base64_) {

@@ -220,6 +220,21 @@ TEST(BoundedWork, OfEqualDistancesIsLinear) {
   }
 }
 
+TEST(BoundedWork, OfASheetAboveAnotherOneIsFewDecisions) {
+  const auto sheet = [](double size, double height) {
+    TriangleMesh mesh = make_cloth(20, 20);
+    for (Vec3d& p : mesh.positions) p = {size * p.x + height / 7, height, size * p.z + 0.01};
+    return mesh;
+  };
+  for (const double gap : {1.0, 0x1p-10, 0x1p-40}) {
+    const TriangleMesh below = sheet(1, 0);
+    const Work work = work_of_distance(below, sheet(1 + 0x1p-5, gap));
+    ASSERT_TRUE(work.nearest);
+    EXPECT_EQ(work.nearest->distance, gap);
+    EXPECT_LT(work.elements, 2 * below.triangles.size()) << gap;
+  }
+}
+
 TEST(BoundedWork, OfEqualTrianglesIsLinear) {
   constexpr std::uint32_t count = 400;
   TriangleMesh a{"", {{0, 0, 0}, {1, 0, 0.1}, {0, 1, 0.2}}, {}},

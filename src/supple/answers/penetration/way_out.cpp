@@ -12,7 +12,7 @@ namespace {
 /// Depths within this ratio count as equal.
 constexpr double equal = 1 + 0x1p-36;
 
-/// Of directions with equal depths, the first along x, then y, then z: the same one in a mirror, and when a
+/// The order of directions with equal depths: along x, then y, then z. It is the same in a mirror, and when a
 /// and b are exchanged.
 bool is_before(const Vec3d& p, const Vec3d& q) {
   const auto rounded = [](double x) { return std::floor(std::fabs(x) * 0x1p20 + 0.5); };

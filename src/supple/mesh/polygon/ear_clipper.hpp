@@ -19,7 +19,7 @@ namespace supple {
 ///
 /// An ear is cut only where the outline winds once around its triangle. So when every corner can be cut, the
 /// triangles cover the inside once. Where an outline that does not cross itself comes back to a place, its
-/// edges there are linked anew, so that each corner has a part of the inside to itself. Then the outline is
+/// edges there get new links, so that each corner has a part of the inside to itself. Then the outline is
 /// several loops, and corners at one place do not hinder each other. When no ear is left, as in an outline
 /// that crosses itself, corners are cut whose triangle turns left, and then any. Outlines that cross
 /// themselves can have many corners in many triangles, so their corners are no longer tested after 100 tests
@@ -61,7 +61,7 @@ class EarClipper {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
   void start(const OutlineView& view);
-  /// Links the edges at each place with several corners anew: each edge that leaves it follows the one that
+  /// Gives the edges at each place with several corners new links: each edge that leaves it follows the one that
   /// comes in on the other side of the inside to its left.
   void link_places(const OutlineWinding& winding);
   void link_place(std::span<const std::uint32_t> corners, bool starts_inside);

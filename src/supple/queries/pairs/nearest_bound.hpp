@@ -15,7 +15,7 @@ namespace supple {
 /// The part of a triangle that is in the plane of its object.
 struct TriangleLevel {
   bool is_in_feature = true;  ///< no more than the nearest feature
-  /// Of that feature, or the largest name where a part of it is missing.
+  /// The name of that feature, or the largest name where a part of it is missing.
   std::array<std::uint32_t, 2> name{};
   std::uint32_t least_vertex = std::numeric_limits<std::uint32_t>::max();
 };

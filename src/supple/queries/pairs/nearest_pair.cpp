@@ -20,6 +20,13 @@ PairName name_of(const ProximityPair& pair) {
   return {pair.kind_a, pair.kind_b, pair.element_a, pair.element_b};
 }
 
+/// Whether two edges are along the same axis: then their vertices are as near as their insides.
+bool are_along_one_axis(const EdgePoints& p, const EdgePoints& q) {
+  int equal = 0;
+  for (int axis = 0; axis < 3; ++axis) equal += p[0][axis] == p[1][axis] && q[0][axis] == q[1][axis] ? 1 : 0;
+  return equal >= 2;
+}
+
 /// Whether the boxes of some points are farther apart than `distance`.
 bool boxes_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double distance) {
   double square = 0;
@@ -399,18 +406,27 @@ void NearestPairSearch::decide_elements(TrianglePair triangles, const TrianglePo
   const auto is_excluded = [&](unsigned corners_a, unsigned corners_b) {
     return bound_.is_set() && bound_.excludes(depths_a, corners_a, depths_b, corners_b);
   };
+  const auto is_not_nearer = [&](unsigned corners_a, unsigned corners_b) {
+    return bound_.is_set() && depths_a.least(corners_a) >= 0 && depths_b.least(corners_b) >= 0;
+  };
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
     const std::array edge_a{a[i], a[next]};
-    if (!is_excluded(1u << i, NearestBound::all_corners) && !boxes_apart(std::span(&a[i], 1), b, limit_))
-      add({vertex(vertices_a, a, i), face(*b_, triangles.b, b), PairOrder::given, triangles});
-    if (!is_excluded(NearestBound::all_corners, 1u << i) && !boxes_apart(std::span(&b[i], 1), a, limit_))
-      add({vertex(vertices_b, b, i), face(*a_, triangles.a, a), PairOrder::swapped, triangles});
+    constexpr unsigned all = NearestBound::all_corners;
+    if (!is_excluded(1u << i, all) && !boxes_apart(std::span(&a[i], 1), b, limit_))
+      add({vertex(vertices_a, a, i), face(*b_, triangles.b, b), PairOrder::given, triangles,
+           is_not_nearer(1u << i, all)});
+    if (!is_excluded(all, 1u << i) && !boxes_apart(std::span(&b[i], 1), a, limit_))
+      add({vertex(vertices_b, b, i), face(*a_, triangles.a, a), PairOrder::swapped, triangles,
+           is_not_nearer(all, 1u << i)});
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t after = (k + 1) % 3;
-      if (!is_excluded(1u << i | 1u << next, 1u << k | 1u << after) &&
-          !boxes_apart(edge_a, std::array{b[k], b[after]}, limit_))
-        add({edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles});
+      const unsigned corners_a = 1u << i | 1u << next, corners_b = 1u << k | 1u << after;
+      const std::array edge_b{b[k], b[after]};
+      if (!are_along_one_axis(edge_a, edge_b) && !is_excluded(corners_a, corners_b) &&
+          !boxes_apart(edge_a, edge_b, limit_))
+        add({edge(vertices_a, a, i), edge(vertices_b, b, k), PairOrder::given, triangles,
+             is_not_nearer(corners_a, corners_b)});
     }
   }
 }
@@ -427,26 +443,35 @@ void NearestPairSearch::consider_all() {
   consider(edges_);
 }
 
-/// Considers those that the kernel does not exclude.
+/// Considers those that the kernel does not exclude. Many others have the nearest features again, which
+/// several triangles share, or are as near and come later in the order of pairs.
 void NearestPairSearch::consider(Candidates& list) {
   const bool are_edges = &list == &edges_;
-  std::array<FeatureCode, PointsBlock::capacity> codes;
+  std::array<FeatureCode, PointsBlock::capacity> codes, codes_at_any_distance;
   classify(list.block, list.count, are_edges, limit_, codes.data());
+  const bool needs_features = best_ && std::find(codes.begin(), codes.begin() + list.count,
+                                                 FeatureCode::unknown) != codes.begin() + list.count;
+  if (needs_features) classify(list.block, list.count, are_edges, any_distance, codes_at_any_distance.data());
   for (std::size_t i = 0; i < list.count; ++i) {
     if (codes[i] == FeatureCode::apart) continue;
     const ElementCandidate& candidate = list.candidates[i];
-    // Most of the others have the nearest features again, which several triangles share.
-    const bool is_known =
-        codes[i] != FeatureCode::unknown && best_ &&
-        name_of_pair(candidate.first, candidate.second, features_of_code(codes[i], are_edges),
-                     candidate.order, ProximityListing::features) == name_of(*best_);
-    if (!is_known) consider(candidate);
+    const bool is_known = codes[i] != FeatureCode::unknown;
+    const FeatureCode code = is_known || !needs_features ? codes[i] : codes_at_any_distance[i];
+    if (best_ && code != FeatureCode::unknown) {
+      const ClosestFeatures features = features_of_code(code, are_edges);
+      // The vertices of edges are tested against faces, too.
+      if (are_edges && features.kind != ClosestFeatures::Kind::interiors) continue;
+      const PairName name = name_of_pair(candidate.first, candidate.second, features, candidate.order,
+                                         ProximityListing::features);
+      if (name == name_of(*best_) || (candidate.is_not_nearer && name_of(*best_) < name)) continue;
+    }
+    consider(candidate);
   }
   list.count = 0;
 }
 
 void NearestPairSearch::consider(const ElementCandidate& candidate) {
-  const auto& [first, second, order, triangles] = candidate;
+  const auto& [first, second, order, triangles, is_not_nearer] = candidate;
   const ElementPoints elements = points_of(first, second);
   if (farther_.find(elements) != nullptr) return;
   ++decided_elements_;

@@ -59,6 +59,7 @@ class NearestPairSearch {
     PairElement first, second;
     PairOrder order = PairOrder::given;
     TrianglePair triangles;
+    bool is_not_nearer = false;  ///< than the nearest features, now and later
   };
   struct Candidates {
     PointsBlock block;
