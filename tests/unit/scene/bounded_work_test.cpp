@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "answers/penetration/curve_finder.hpp"
 #include "core/parallel.hpp"
 #include "queries/object_queries.hpp"
 #include "queries/pairs/nearest_pair.hpp"
@@ -40,6 +41,9 @@ class Searched {
             object_.box(),
             object_.has_inert_faces(),
             object_.fine_boxes()};
+  }
+  SurfaceView surface() {
+    return {&object_.octree(), &object_.vertex_triangles(), &object_.placement().end()};
   }
 
  private:
@@ -309,6 +313,30 @@ TEST(BoundedWork, OfARayIsThatOfANearOne) {
       }
     }
   }
+}
+
+/// The work for the curve of a ball that is pressed into a block of `cells` cells of length 1.
+std::size_t work_of_curves(std::uint32_t cells) {
+  const double length = cells;
+  TriangleMesh block = moved(make_box({length, length, length}, cells), {0.25, -length / 2, 0.125}),
+               ball = moved(scaled(make_icosphere(8), 2.5), {0, 1.75, 0});
+  Scene scene({.contacts = ContactKinds::intersection});
+  scene.add(ball, {.solid = true});
+  scene.add(block, {.solid = true});
+  const DetectResult& result = scene.detect();
+  Searched a(ball, 0), b(block, 1);
+  const QueriedObject of_a = a.view(), of_b = b.view();
+  CurveFinder finder;
+  CurveLists lists;
+  finder.find({a.surface(), b.surface(), &of_a, &of_b, true, true, false, &result.groups[0], &result}, lists);
+  EXPECT_EQ(lists.curves.size(), 1u);
+  EXPECT_NEAR(lists.curves[0].depth, 0.75, 0.01);
+  return finder.visited();
+}
+
+TEST(BoundedWork, OfACurveIsThatOfItsContacts) {
+  EXPECT_LT(work_of_curves(16), 2000u);
+  EXPECT_EQ(work_of_curves(80), work_of_curves(16));
 }
 
 /// Small objects, so that exact brute force decides in time.

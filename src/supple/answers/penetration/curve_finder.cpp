@@ -37,6 +37,7 @@ Vec3d restored(const Vec3d& scaled, double scale) {
 
 void CurveFinder::find(const CurveInput& input, CurveLists& lists) {
   input_ = input;
+  visited_ = 0;
   contacts_ = input.result->contacts_of(*input.group);
   if (contacts_.empty()) return;
   const Contact& last = contacts_.back();
@@ -202,10 +203,12 @@ void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& 
       }
     }
     region.grow(number, other_is_solid ? all : many);
+    visited_ += region.inside().size() + region.beyond().size();
   }
   curve.enclosed_count_a = static_cast<std::uint32_t>(enclose(members, false, lists));
   curve.enclosed_count_b = static_cast<std::uint32_t>(enclose(members, true, lists));
   find_way_out(members, curve);
+  visited_ += way_out_.triangle_count();
   lists.curves.push_back(curve);
 }
 
@@ -368,6 +371,7 @@ std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool si
   const std::span<const std::uint32_t> behind = regions_[side_b ? 1 : 0].inside();
   const std::span<const std::uint32_t> enclosed =
       side_.enclose(surface, behind.empty() ? CurveSide::none : behind.front());
+  visited_ += side_.visited();
   const auto first = static_cast<std::ptrdiff_t>(lists.enclosed.size());
   lists.enclosed.insert(lists.enclosed.end(), enclosed.begin(), enclosed.end());
   std::sort(lists.enclosed.begin() + first, lists.enclosed.end());

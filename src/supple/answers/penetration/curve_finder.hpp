@@ -47,6 +47,8 @@ class CurveFinder {
   /// Appends the curves of a group, ordered by their smallest contacts. O(n log n) for n contacts, and the
   /// vertices that each curve encloses.
   void find(const CurveInput& input, CurveLists& lists);
+  /// The work of the last `find`: vertices and triangles that it read for all curves.
+  std::size_t visited() const { return visited_; }
 
  private:
   /// A point of a contact. Points with the same names are one point of a curve.
@@ -132,6 +134,7 @@ class CurveFinder {
   CurveSide side_;
   std::array<ContactRegions, 2> regions_;  // of the surfaces
   WayOut way_out_;
+  std::size_t visited_ = 0;
 };
 
 }  // namespace supple

@@ -26,6 +26,8 @@ class CurveSide {
   /// The vertices of the smaller of the two parts into which the curve cuts the surface; when both are equal,
   /// the part of the vertex `behind`, if there is one. None when the curve does not cut it in two.
   std::span<const std::uint32_t> enclose(const SurfaceView& surface, std::uint32_t behind = none);
+  /// The number of vertices that the last `enclose` reached.
+  std::size_t visited() const { return flooded_[0].size() + flooded_[1].size(); }
 
  private:
   /// Where the curve crosses an edge between two corners, and the key of that point.

@@ -55,6 +55,7 @@ class WayOut {
   /// The candidate with the least depth, or a direction between two or three faces with a smaller one. There
   /// is at least one candidate.
   Way find(std::span<const WayCandidate> candidates);
+  std::size_t triangle_count() const { return triangles_[0].size() + triangles_[1].size(); }
 
  private:
   struct Tried {
