@@ -169,6 +169,11 @@ def judged(cells):
         values = judge.cells[cell]["values"]
         judge.add("99.9th percentile of frames", cell, "median",
                   values["milliseconds, 99.9th percentile"] / values["milliseconds, median"], 2, 1.3, True)
+    for cell in judge.matching("frames/surgery"):
+        for with_curves, reach in (("", 1.0), (", with curves", 1.5)):
+            judge.add("99th percentile of frames with penetration" + with_curves + ", milliseconds", cell, "",
+                      judge.cells[cell]["values"]["milliseconds, 99th percentile" + with_curves], reach, 0.8 * reach,
+                      True)
     for cell in judge.matching("game/.*"):
         values = judge.cells[cell]["values"]
         judge.add("manifolds", cell, "a plain loop",

@@ -21,7 +21,8 @@ constexpr const char* usage =
     "Q/penetration/SHAPE[-deep]  Q/distance/SHAPE-apart  Q/distance/SHAPE-near\n"
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
     "limits/refit/TRIANGLES  "
-    "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  frames/SHAPExCOPIES  first/SHAPExCOPIES  first/CLOTH\n"
+    "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  frames/SHAPExCOPIES  frames/surgery  first/SHAPExCOPIES "
+    " first/CLOTH\n"
     "      game/penetration  game/proximity\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
     "crumpled passing rods\n"
@@ -74,6 +75,8 @@ void run(const Choice& choice) {
     run_first_frame(choice, after("first/"), output);
   } else if (cell.starts_with("game/")) {
     run_game(choice, after("game/"), output);
+  } else if (cell == "frames/surgery") {
+    run_surgery(choice, output);
   } else if (cell.starts_with("frames/")) {
     run_frames(choice, after("frames/"), output);
   } else {

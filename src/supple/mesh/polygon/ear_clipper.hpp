@@ -61,8 +61,8 @@ class EarClipper {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
   void start(const OutlineView& view);
-  /// Gives the edges at each place with several corners new links: each edge that leaves it follows the one that
-  /// comes in on the other side of the inside to its left.
+  /// Gives the edges at each place with several corners new links: each edge that leaves it follows the one
+  /// that comes in on the other side of the inside to its left.
   void link_places(const OutlineWinding& winding);
   void link_place(std::span<const std::uint32_t> corners, bool starts_inside);
   std::uint32_t next_corner();
