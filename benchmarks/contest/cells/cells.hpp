@@ -41,7 +41,7 @@ void run_first_frame(const Choice& choice, const std::string& cell, Output& outp
 /// SHAPExCOPIES: the distribution of the times of 10,000 frames (`Choice::rounds`, if given).
 void run_frames(const Choice& choice, const std::string& cell, Output& output);
 /// The distribution of the times of 5,000 frames (`Choice::rounds`, if given) of a tool on an organ, with
-/// penetration, and with penetration and curves.
+/// penetration, and with penetration and curves. The time of a frame is the least of four runs.
 void run_surgery(const Choice& choice, Output& output);
 /// A pile of crates and balls, with penetration or proximity: the median time of a frame with manifolds and
 /// without, of the manifolds alone, and of a plain loop that makes its own.
