@@ -93,11 +93,6 @@ void Queries::list_objects(const QueryFilter& filter, const char* call, Call& us
   }
 }
 
-void Queries::check_bits(const CoordinateBits& bits, const Call& use, const char* call) const {
-  for (const QueriedObject& object : use.objects)
-    check_exact_bits_of_queries(world_, bits, object.id.index, call);
-}
-
 /// `places` are those of the queries. Neighbours follow each other, because a search is fast where the one
 /// before it was near.
 template <class Answer>
@@ -136,11 +131,6 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
       object.fine_boxes = far.fine_boxes();
     }
   }
-  if (has_exact_limit(world_)) {
-    CoordinateBits bits = bits_of_points(points);
-    bits.add({options.max_distance, 0, 0}, CoordinateBits::no_point);
-    check_bits(bits, *use, "closest");
-  }
   const StopSignal stop = stop_of(options.limits);
   answer(points, stop, *use, [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.closest(use->objects, points[i], options.max_distance);
@@ -158,7 +148,6 @@ void Queries::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> r
     const Lock lock(mutex_);
     list_objects(options.filter, "cast", *use);
   }
-  if (has_exact_limit(world_)) check_bits(bits_of_rays(rays), *use, "cast");
   use->origins.clear();
   for (const Ray& ray : rays) use->origins.push_back(ray.origin);
   const StopSignal stop = stop_of(options.limits);
@@ -176,7 +165,6 @@ std::vector<ListedRayHit> Queries::cast_all(std::span<const Ray> rays, const Que
     const Lock lock(mutex_);
     list_objects(filter, "cast_all", *use);
   }
-  if (has_exact_limit(world_)) check_bits(bits_of_rays(rays), *use, "cast_all");
   const StopSignal stop = stop_of(limits);
   for (Worker& worker : use->workers) worker.hits.clear();
   world_.parallel.for_ranges(rays.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
@@ -197,7 +185,6 @@ void Queries::inside(std::span<const Vec3d> points, std::span<Containment> resul
     check_closed(world_, filter, "inside");
     list_objects(filter, "inside", *use);
   }
-  if (has_exact_limit(world_)) check_bits(bits_of_points(points), *use, "inside");
   const StopSignal stop = stop_of(limits);
   std::fill(results.begin(), results.end(), Containment::outside);
   for (const QueriedObject& object : use->objects) find_inside(object, points, stop, results, *use);
@@ -250,7 +237,6 @@ std::vector<Overlap> Queries::overlaps(std::span<const Region> regions, const Qu
     const Lock lock(mutex_);
     list_objects(filter, "overlaps", *use);
   }
-  if (has_exact_limit(world_)) check_bits(bits_of_regions(regions), *use, "overlaps");
   const StopSignal stop = stop_of(limits);
   for (Worker& worker : use->workers) worker.overlaps.clear();
   world_.parallel.for_ranges(regions.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {

@@ -15,7 +15,6 @@
 #include "queries/object_queries.hpp"
 #include "queries/pairs/nearest_pair.hpp"
 #include "supple/queries.hpp"
-#include "world/exact_limit.hpp"
 #include "world/world.hpp"
 
 namespace supple {
@@ -92,7 +91,6 @@ class Queries {
   void refit() const;
   /// Lists the objects that the filter lets through. The caller holds the mutex.
   void list_objects(const QueryFilter& filter, const char* call, Call& use) const;
-  void check_bits(const CoordinateBits& bits, const Call& use, const char* call) const;
   /// Calls `answer(queries, i)` once for each query i.
   template <class Answer>
   void answer(std::span<const Vec3d> places, const StopSignal& stop, Call& use, const Answer& answer) const;
