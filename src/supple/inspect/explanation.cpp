@@ -4,7 +4,6 @@
 #include <span>
 #include <utility>
 
-#include "contact/distance/edge_face_crossing.hpp"
 #include "contact/distance/triangle_gap.hpp"
 #include "contact/intersection/neighbour_test.hpp"
 #include "core/error.hpp"
@@ -14,8 +13,9 @@
 #include "inspect/inspection.hpp"
 #include "inspect/searched_volumes.hpp"
 #include "mesh/share_vertex.hpp"
-#include "supple/distance.hpp"
 #include "supple/triangle_intersection.hpp"
+#include "verify/brute_force_proximity.hpp"
+#include "verify/plain_objects.hpp"
 
 namespace supple {
 namespace {
@@ -254,48 +254,21 @@ bool Inspection::touch_on_the_way(const ContactJob& job, TrianglePair triangles)
 
 /// Whether an element of one triangle is within the margins of an element of the other.
 bool Inspection::are_near(const ContactJob& job, TrianglePair triangles) const {
-  const WorldObject &a = world_[job.a], &b = world_[job.b];
-  const TrianglePoints p = points_of(a, triangles.a), q = points_of(b, triangles.b);
-  const Triangle &ids_a = a.octree().triangles()[triangles.a], &ids_b = b.octree().triangles()[triangles.b];
-  const VertexGroups groups_a = a.vertex_groups(), groups_b = b.vertex_groups();
-  const double reach = reach_of(job);
-  const auto may_touch = [&](const Triangle& of_a, const Triangle& of_b) {
-    return may_touch_by_groups(groups_a, of_a, groups_b, of_b);
+  const auto elements_of = [&](const WorldObject& object, std::uint32_t triangle) {
+    PlainMovingObject plain = plain_moving_object(object);
+    plain.start = plain.end;
+    plain.triangles = {object.octree().triangles()[triangle]};
+    plain.face_count = object.octree().triangle_ids()[triangle] < object.face_count() ? 1 : 0;
+    return plain;
   };
-  const auto corner = [](std::uint32_t vertex) { return Triangle{vertex, vertex, vertex}; };
-  const auto is_in = [&](std::uint32_t vertex, const Triangle& triangle) {
-    return job.a == job.b && std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
+  const auto are_some_near = [&](const PlainMovingObject& p, const PlainMovingObject& q) {
+    return !find_proximity_by_brute_force(p, q, job.a == job.b, reach_of(job), ProximityListing::features,
+                                          question().impact.kinds, world_.parallel)
+                .near.empty();
   };
-  bool used_exact = false;
-  const auto crosses = [&](std::size_t i, const TrianglePoints& of_edge, const Triangle& ids_of_edge,
-                           const TrianglePoints& face, const Triangle& ids_of_face) {
-    const std::size_t next = (i + 1) % 3;
-    if (is_in(ids_of_edge[i], ids_of_face) || is_in(ids_of_edge[next], ids_of_face)) return false;
-    return edge_crosses_face({of_edge[i], of_edge[next]}, face, used_exact);
-  };
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!is_in(ids_a[i], ids_b) && may_touch(corner(ids_a[i]), ids_b) &&
-        point_triangle_distance(p[i], q, reach))
-      return true;
-    if (!is_in(ids_b[i], ids_a) && may_touch(ids_a, corner(ids_b[i])) &&
-        point_triangle_distance(q[i], p, reach))
-      return true;
-    const std::size_t i1 = (i + 1) % 3;
-    if (question().impact.kinds == ElementKinds::all && may_touch({ids_a[i], ids_a[i1], ids_a[i]}, ids_b) &&
-        crosses(i, p, ids_a, q, ids_b))
-      return true;
-    if (question().impact.kinds == ElementKinds::all && may_touch(ids_a, {ids_b[i], ids_b[i1], ids_b[i]}) &&
-        crosses(i, q, ids_b, p, ids_a))
-      return true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t k1 = (k + 1) % 3;
-      const Triangle edge{ids_b[k], ids_b[k1], ids_b[k]};
-      if (is_in(ids_a[i], edge) || is_in(ids_a[i1], edge)) continue;
-      if (!may_touch({ids_a[i], ids_a[i1], ids_a[i]}, edge)) continue;
-      if (edge_edge_distance({p[i], p[i1]}, {q[k], q[k1]}, reach)) return true;
-    }
-  }
-  return false;
+  const PlainMovingObject p = elements_of(world_[job.a], triangles.a),
+                          q = elements_of(world_[job.b], triangles.b);
+  return are_some_near(p, q) || (job.a == job.b && are_some_near(q, p));
 }
 
 /// Follows the stages of `detect`. Triangles are in the order of the traversal.
