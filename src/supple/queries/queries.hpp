@@ -89,6 +89,9 @@ class Queries {
 
   /// Refits what has moved. The caller holds the mutex.
   void refit() const;
+  template <class Item, class Find>
+  std::vector<Item> find_all(std::size_t count, std::vector<Item> Worker::*list, const QueryFilter& filter,
+                             const char* call, const CallLimits& limits, const Find& find) const;
   /// Lists the objects that the filter lets through. The caller holds the mutex.
   void list_objects(const QueryFilter& filter, const char* call, Call& use) const;
   /// Calls `answer(queries, i)` once for each query i.
