@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
-#include "contact/distance/triangle_gap.hpp"
 #include "contact/intersection/neighbour_test.hpp"
 #include "core/error.hpp"
 #include "geometry/aabb.hpp"
@@ -13,6 +13,8 @@
 #include "inspect/inspection.hpp"
 #include "inspect/searched_volumes.hpp"
 #include "mesh/share_vertex.hpp"
+#include "queries/box_faces.hpp"
+#include "supple/distance.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "verify/brute_force_proximity.hpp"
 #include "verify/plain_objects.hpp"
@@ -51,36 +53,13 @@ PairExplanation mirrored(PairExplanation explanation) {
   return explanation;
 }
 
-/// A box in double precision.
-struct Corners {
-  Vec3d low, high;
-};
-
-Corners corners_of(const Aabb& box, const Vec3d& translation) {
+QueryBox translated(const Aabb& box, const Vec3d& translation) {
   return {Vec3d{box.min.x, box.min.y, box.min.z} + translation,
           Vec3d{box.max.x, box.max.y, box.max.z} + translation};
 }
 
-Corners corners_of(const TrianglePoints& points) {
-  Corners corners{points[0], points[0]};
-  for (const Vec3d& p : points) {
-    for (int axis = 0; axis < 3; ++axis) {
-      corners.low[axis] = std::min(corners.low[axis], p[axis]);
-      corners.high[axis] = std::max(corners.high[axis], p[axis]);
-    }
-  }
-  return corners;
-}
-
-Aabb box_of(const Corners& corners) {
-  Aabb box;
-  extend(box, corners.low);
-  extend(box, corners.high);
-  return box;
-}
-
 /// Sets the axis along which the boxes are furthest apart, from a to b, and the distance along it.
-void set_gap(PairExplanation& explanation, const Corners& a, const Corners& b) {
+void set_gap(PairExplanation& explanation, const QueryBox& a, const QueryBox& b) {
   explanation.distance = -INFINITY;
   const auto consider = [&](int axis, double sign, double gap) {
     if (!(gap > explanation.distance)) return;
@@ -89,8 +68,8 @@ void set_gap(PairExplanation& explanation, const Corners& a, const Corners& b) {
     explanation.axis[axis] = sign;
   };
   for (int axis = 0; axis < 3; ++axis) {
-    consider(axis, 1, b.low[axis] - a.high[axis]);
-    consider(axis, -1, a.low[axis] - b.high[axis]);
+    consider(axis, 1, b.min[axis] - a.max[axis]);
+    consider(axis, -1, a.min[axis] - b.max[axis]);
   }
 }
 
@@ -163,7 +142,7 @@ PairExplanation objects_apart(const WorldObject& a, const WorldObject& b, Boundi
   } else {
     explanation.box_a = has_elements ? unclamped(a.box()) : a.box();
     explanation.box_b = has_elements ? unclamped(b.box()) : b.box();
-    set_gap(explanation, corners_of(explanation.box_a, {}), corners_of(explanation.box_b, {}));
+    set_gap(explanation, translated(explanation.box_a, {}), translated(explanation.box_b, {}));
     if (!has_elements && overlap(a.box(), b.box())) {
       explanation.slabs_a = object_slabs(a.resting_view());
       explanation.slabs_b = object_slabs(b.resting_view());
@@ -191,7 +170,7 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
     const Aabb a = child_box(pair.a, at.node_a, at.child_a), b = child_box(pair.b, at.node_b, at.child_b);
     explanation.box_a = moved(a, to_a);
     explanation.box_b = moved(b, to_b);
-    set_gap(explanation, corners_of(a, to_a), corners_of(b, to_b));
+    set_gap(explanation, translated(a, to_a), translated(b, to_b));
     if (!pair.a.volumes.empty() && !(explanation.distance > 0)) {
       explanation.slabs_a = child_slabs(pair.a, at.node_a, at.child_a);
       explanation.slabs_b = child_slabs(pair.b, at.node_b, at.child_b);
@@ -203,10 +182,10 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
 
 PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoints& b) {
   PairExplanation explanation{.stage = PairStage::triangle_boxes};
-  const Corners corners_a = corners_of(a), corners_b = corners_of(b);
-  explanation.box_a = box_of(corners_a);
-  explanation.box_b = box_of(corners_b);
-  set_gap(explanation, corners_a, corners_b);
+  const QueryBox box_a = box_of(a), box_b = box_of(b);
+  for (const Vec3d& corner : {box_a.min, box_a.max}) extend(explanation.box_a, corner);
+  for (const Vec3d& corner : {box_b.min, box_b.max}) extend(explanation.box_b, corner);
+  set_gap(explanation, box_a, box_b);
   return explanation;
 }
 
@@ -215,9 +194,18 @@ PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b
   // Continuous contacts do not include triangles that intersect from the start when none of their elements
   // touch.
   if (triangles_intersect(a, b)) return explanation;
-  const TriangleGap gap = triangle_gap(a, b);
-  explanation.axis = gap.axis;
-  explanation.distance = gap.distance;
+  explanation.distance = any_distance;
+  const auto consider = [&](const std::optional<ElementDistance>& found, double from_a_to_b) {
+    if (!found || found->distance > explanation.distance) return;
+    explanation.distance = found->distance;
+    explanation.axis = from_a_to_b * found->normal;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    consider(point_triangle_distance(a[i], b), -1);
+    consider(point_triangle_distance(b[i], a), 1);
+    for (std::size_t k = 0; k < 3; ++k)
+      consider(edge_edge_distance({a[i], a[(i + 1) % 3]}, {b[k], b[(k + 1) % 3]}), -1);
+  }
   return explanation;
 }
 
