@@ -177,7 +177,7 @@ void JsonReport::add(const Frame& frame) {
       options.contacts == ContactKinds::none || contains(options.contacts, ContactKinds::intersection);
   const bool proximity = contains(options.contacts, ContactKinds::proximity);
   if (continuous) {
-    write_continuous_groups(json_, result, !options.impact.exact || options.max_exact_bits < most_exact_bits);
+    write_continuous_groups(json_, result, !options.impact.exact);
     if (content_.contact_details)
       write_records(json_, both ? "continuous_contacts" : "contacts", result.continuous_contacts);
   }

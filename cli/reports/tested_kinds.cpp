@@ -113,10 +113,6 @@ std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason
       return "all margins are 0, which finds only what touches; give --margin";
     case NothingToTest::one_object:
       return advice_for_one_object(kind);
-    case NothingToTest::shared_vertex:
-      if (reads_lines(kind)) return "each two elements of the object share a vertex; give more objects";
-      return has_one_triangle_ ? "there is only one triangle; give more objects"
-                               : "each two triangles of the object share a vertex; give --neighbours exact";
     case NothingToTest::all_static:
       return "all objects are static; let one of them move";
     case NothingToTest::groups:

@@ -56,7 +56,7 @@ std::optional<ContinuousContact> DistributedScene::Implementation::earliest_impa
     return call("earliest_impact");
   });
   const SceneOptions& of = options.scene;
-  const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
+  const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing};
   question_ = {.contacts = ContactKinds::continuous, .impact = search};
   prepare();
   std::optional<ContinuousContact> own;
@@ -81,7 +81,7 @@ SafeStep DistributedScene::Implementation::safe_step(const std::optional<StepOpt
     return step ? call(name).add_options(*step) : call(name);
   });
   const SceneOptions& of = options.scene;
-  const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing, of.max_exact_bits};
+  const ImpactSearchOptions search{of.impact, of.element_kinds, of.continuous_listing};
   question_ = {.contacts = ContactKinds::continuous, .impact = search, .safe_step = step};
   prepare();
   SafeStep safe;

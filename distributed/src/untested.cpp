@@ -1,41 +1,48 @@
 // The kinds of contacts that had nothing to test. Most steps only need to know that two objects may touch,
-// which the groups of all objects tell. Otherwise the first home of each object gets it whole, and rank 0
+// which the settings of all objects tell. Otherwise the first home of each object gets it whole, and rank 0
 // decides.
 
 #include "answers/untested.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include "core/sort_once.hpp"
 #include "distributed_implementation.hpp"
 
 namespace supple {
 
-/// Collective: whether two objects on any ranks may touch, at least by what each home knows of its part.
+/// Collective: whether two objects on any ranks may touch, at least by what each home knows of its part. Two
+/// objects stand for all that have the same settings.
 bool DistributedScene::Implementation::has_pair_to_test(ContactKinds kind) {
-  bool has_filter_or_groups = static_cast<bool>(filter_);
-  std::vector<TestableObject> objects;
-  PairableObjects own, earlier;
-  for (const auto& [id, object] : homes_) {
-    has_filter_or_groups = has_filter_or_groups || object.has_vertex_groups();
-    if (object.first_home != ranks.rank()) continue;
-    const ObjectOptions& of = object.options;
-    objects.push_back({.id = id,
-                       .takes_part = object.has_finite_face(),
-                       .has_quality = (kind != ContactKinds::continuous || object.has_motion()) &&
-                                      (kind != ContactKinds::proximity || of.margin > 0) &&
-                                      (kind != ContactKinds::penetration || of.solid),
-                       .is_static = of.is_static,
-                       .group = of.group,
-                       .mask = of.mask});
-    own.add(objects.back());
-  }
-  MPI_Exscan(&own, &earlier, static_cast<int>(sizeof own / sizeof(std::uint32_t)), MPI_UINT32_T, MPI_BOR,
-             ranks.handle());
-  if (ranks.rank() == 0) earlier = {};
+  outbox_.clear();
+  ranks.together([&] {
+    std::map<std::array<std::uint32_t, 5>, int> sent;
+    for (const auto& [id, object] : homes_) {
+      if (object.first_home != ranks.rank()) continue;
+      const ObjectOptions& of = object.options;
+      const TestableObject testable{
+          .id = id,
+          .takes_part = object.has_finite_face(),
+          .has_quality = (kind != ContactKinds::continuous || object.has_motion()) &&
+                         (kind != ContactKinds::proximity || of.margin > 0) &&
+                         (kind != ContactKinds::penetration || of.solid),
+          .is_static = of.is_static,
+          .group = of.group,
+          .mask = of.mask};
+      if (sent[{testable.takes_part, testable.has_quality, of.is_static, of.group, of.mask}]++ < 2)
+        outbox_.to(0).put(testable);
+    }
+  });
+  ranks.exchange(outbox_, inbox_);
   bool has_pair = false;
-  for (const TestableObject& object : objects) has_pair = earlier.add(object) || has_pair;
-  return ranks.any(has_pair) && !ranks.any(has_filter_or_groups);
+  TestableObjects objects;
+  inbox_.for_each([&](Reader& from, int) {
+    while (!from.is_done())
+      has_pair = objects.add(from.get<TestableObject>(), [](ObjectId, ObjectId) { return true; }) || has_pair;
+  });
+  return ranks.any(has_pair) && !ranks.any(static_cast<bool>(filter_));
 }
 
 /// What this rank knows of an object that it has whole.
@@ -91,7 +98,12 @@ void DistributedScene::Implementation::list_untested() {
       std::sort(objects.begin(), objects.end(),
                 [](const TestableObject& p, const TestableObject& q) { return p.id < q.id; });
       if (ranks.rank() != 0) return;
-      if (const auto found = nothing_to_test(kind, objects, filter_)) reason = static_cast<int>(*found);
+      TestableObjects tested;
+      const auto accept = [&](ObjectId a, ObjectId b) { return !filter_ || filter_(a, b); };
+      for (const TestableObject& object : objects) {
+        if (tested.add(object, accept)) return;
+      }
+      if (const auto found = tested.reason(kind)) reason = static_cast<int>(*found);
     });
     MPI_Bcast(&reason, 1, MPI_INT, 0, ranks.handle());
     if (reason >= 0) untested_.push_back({kind, static_cast<NothingToTest>(reason)});

@@ -65,8 +65,7 @@ struct ImpactOptions {
 /// Whether an impact is proven.
 enum class ImpactCertainty : std::uint8_t {
   certain,  ///< proven: the elements touch
-  /// So close that floating point cannot decide. Only when `exact` is off, or for coordinates of more than
-  /// `SceneOptions::max_exact_bits`.
+  /// So close that floating point cannot decide. Only when `exact` is off.
   within_tolerance,
 };
 

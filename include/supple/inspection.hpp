@@ -106,8 +106,7 @@ struct PairExplanation {
   /// Their numbers, as in `OctreeCell::number`.
   std::optional<std::uint64_t> number_a = 0, number_b = 0;
   /// At `exact_test`: the unit direction from a to b between the closest points of the triangles, and their
-  /// distance, both rounded. When rounding leaves no distance, it is 0 and the axis is a direction that
-  /// separates the triangles except for rounding.
+  /// distance, both rounded as in `ElementDistance`.
   /// At `object_volumes`, `octree_volumes` and `triangle_boxes`: the coordinate axis from a to b along which
   /// the boxes are furthest apart, the direction between the centers of the spheres, or that of the slabs
   /// that are furthest apart (for oriented boxes also the cross product of two axes), and the gap along it.

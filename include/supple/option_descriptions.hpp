@@ -317,15 +317,6 @@ struct Description<SceneOptions> {
         .member = &Options::curves,
         .doc = "Penetration: also list the curves in which surfaces intersect, with what they enclose, a "
                "normal and a depth"});
-    visitor(Field<Options, std::uint32_t>{
-        .name = "max_exact_bits",
-        .member = &Options::max_exact_bits,
-        .doc = "Limit of exact arithmetic, which hostile coordinates make slow: the bits from the highest of "
-               "the largest coordinate to the last of the finest. Elements of more bits that floating point "
-               "cannot decide are continuous contacts within tolerance; for other contacts, objects of more "
-               "bits are an error. 2098 means no limit",
-        .range = ValueRange::from(53, most_exact_bits),
-        .unit = "bits"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads; 0 means one per core",

@@ -149,9 +149,6 @@ struct ObjectOptions {
   ObjectOctreeOptions octree{};  ///< shape of the octree; only for comparison
 };
 
-/// No finite doubles have more bits, from the highest bit of the largest to the last bit of the finest.
-inline constexpr std::uint32_t most_exact_bits = 2098;
-
 /// Options of a scene, fixed at its construction.
 struct SceneOptions {
   BoundingVolume bounding_volume = BoundingVolume::aabb;
@@ -179,13 +176,6 @@ struct SceneOptions {
   /// so leave it out where depths of vertices suffice. Manifolds of penetration are made from curves:
   /// `manifolds` includes them. A request with this option and without penetration is an error.
   bool curves = false;
-  /// Bounds the time of exact arithmetic on hostile coordinates; docs/conventions.md has a table. The bits of
-  /// coordinates reach from the highest bit of the largest to the last bit of the finest. Elements of more
-  /// bits that floating point cannot decide are reported as continuous contacts `within_tolerance`. For all
-  /// other kinds of contacts, `detect` throws `Error` when two objects that may touch have more bits, which
-  /// takes O(n), and so do queries for their numbers and the objects that they see. Coordinates above 2^-150
-  /// and below 2^50 have at most 252 bits. 53 to `most_exact_bits`, which means no limit.
-  std::uint32_t max_exact_bits = most_exact_bits;
   /// Worker threads; 0 means one for each core. Fewer work when the system refuses to create them
   /// (supple/threads.hpp). The results are the same for any number.
   std::uint32_t threads = 0;

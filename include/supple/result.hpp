@@ -58,15 +58,14 @@ enum class NothingToTest : std::uint8_t {
   /// No object has a triangle. For continuous contacts and proximity: nor an edge or a point, or no edge when
   /// only pairs of edges are searched.
   no_elements,
-  not_finite,     ///< each element has a vertex that is not finite
-  no_solid,       ///< penetration: no object is solid
-  no_motion,      ///< continuous contacts: no object has a path
-  no_margin,      ///< proximity: all margins are 0, so that only elements at distance 0 are near
-  one_object,     ///< one object has elements, and it is not tested against itself
-  shared_vertex,  ///< one object is tested against itself, but each two of its elements share a vertex
-  all_static,     ///< all objects with elements are static
-  groups,         ///< groups and masks, of objects or of vertices, exclude all pairs
-  filter,         ///< the pair filter excludes all pairs
+  not_finite,  ///< each element has a vertex that is not finite
+  no_solid,    ///< penetration: no object is solid
+  no_motion,   ///< continuous contacts: no object has a path
+  no_margin,   ///< proximity: all margins are 0, so that only elements at distance 0 are near
+  one_object,  ///< one object has elements, and it is not tested against itself or has only one
+  all_static,  ///< all objects with elements are static
+  groups,      ///< groups and masks of objects exclude all pairs
+  filter,      ///< the pair filter excludes all pairs
 };
 
 /// A kind of contacts for which there was nothing to test.

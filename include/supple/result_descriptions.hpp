@@ -30,8 +30,8 @@ template <>
 inline constexpr std::array words<PenetrationDifference::Fault>{"missed", "added", "inexact"};
 template <>
 inline constexpr std::array words<NothingToTest>{"no_objects", "no_elements", "not_finite", "no_solid",
-                                                 "no_motion",  "no_margin",   "one_object", "shared_vertex",
-                                                 "all_static", "groups",      "filter"};
+                                                 "no_motion",  "no_margin",   "one_object", "all_static",
+                                                 "groups",     "filter"};
 template <>
 inline constexpr std::array words<Lasting>{"begin", "stay"};
 template <>

@@ -196,7 +196,7 @@ class Scene {
   /// Otherwise the step is positive. It is proven that also the positions from + t (to - from), computed in
   /// double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements
   /// touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then
-  /// the first that would touch. Pairs of more than `SceneOptions::max_exact_bits` can make it shorter.
+  /// the first that would touch.
   ///
   /// Ignores `ImpactOptions::max_time` and `skip_parting`. A step that is many times longer than the objects
   /// takes about the time of a short one, which is a few times that of `detect` for a short step. Throws
@@ -236,10 +236,7 @@ class Scene {
   //
   // Worst case: each query decides all triangles, and `distance` all pairs of elements, by exact arithmetic;
   // docs/conventions.md has a table of its time. That needs input made for it, such as many triangles at
-  // distances that are equal to a hundred bits. `CallLimits::stop` ends such a call. With
-  // `SceneOptions::max_exact_bits`, queries throw `Error` before any exact work when the numbers of a query
-  // and the coordinates of an object that it sees have more bits together; that check takes O(n) of all
-  // objects that the queries see.
+  // distances that are equal to a hundred bits. `CallLimits::stop` ends such a call.
 
   /// For each point the nearest triangle, or nothing when there is none within the largest distance and when
   /// the point is not finite. Takes about 1.4 µs for each of many points near a surface of 70,000 triangles,

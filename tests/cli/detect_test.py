@@ -176,15 +176,6 @@ class Json(ProgramTest):
         result = json.loads((self.folder / "result.json").read_text())
         self.assertEqual(len(result["frames"]), 1)
 
-    def test_limit_of_exact_arithmetic(self):
-        corners, triangles = TRIANGLE
-        self.write("tiny.obj", ([(1e-200, 0.0, 0.0), *corners[1:]], triangles))
-        meshes = ("tiny.obj", "b.obj")
-        self.assertEqual(len(self.detect(*meshes)["frames"]), 1)
-        done = self.run_here("detect", "--quiet", *meshes, "--max-exact-bits", "252")
-        self.assert_one_line_error(done, "vertex 0 of tiny", "bits together", "max_exact_bits is 252; raise it")
-        self.assertEqual(self.run_here("detect", "--quiet", "a.obj", "b.obj", "--max-exact-bits", "252").error, "")
-
     def test_several_inputs_to_standard_output_are_one_document(self):
         result = self.detect("a.obj", "b.obj", "far.obj", "crossed.obj")
         self.assertEqual([o["name"] for o in result["objects"]], ["a", "b", "far", "crossed"])

@@ -59,8 +59,6 @@ class Options(ProgramTest):
                 name = name if not default else "--no-" + name[2:]
                 if name in flags:
                     others[key] = [name], not default
-            elif key == "max_exact_bits":
-                others[key] = [name, "300"], 300
             elif name in flags:
                 given, told = other_value(flags[name], default)
                 others[key] = [name, given], told

@@ -39,7 +39,6 @@ KEYS = {
     "continuous_listing": ('"first"', "first", 'contacts = "continuous"\n'),
     "manifolds": ("true", True, 'contacts = "proximity"\n'),
     "curves": ("false", False, 'contacts = "penetration"\n'),
-    "max_exact_bits": ("300", 300, ""),
     "colliding_vertices": ("true", True, ""),
     "proximity_listing": ('"elements"', "elements", 'contacts = "proximity"\n'),
 }

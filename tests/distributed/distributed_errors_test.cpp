@@ -233,10 +233,10 @@ TEST(DistributedErrors, OtherCallsOnOneRank) {
   const std::string on_last = "; on rank " + std::to_string(last) + ", ";
   expect("results is gathered" + on_last + "results is spread",
          [&] { DistributedScene(MPI_COMM_WORLD, is_last ? of_last : options); });
-  DistributedOptions bits = options;
-  if (is_last) bits.scene.max_exact_bits = 100;
-  expect("max_exact_bits is 2098" + on_last + "max_exact_bits is 100",
-         [&] { DistributedScene(MPI_COMM_WORLD, bits); });
+  DistributedOptions separated = options;
+  if (is_last) separated.scene.impact.min_separation = 0.5;
+  expect("min_separation is 0" + on_last + "min_separation is 0.5",
+         [&] { DistributedScene(MPI_COMM_WORLD, separated); });
 
   DistributedOptions threads = options;  // each rank has its own
   if (is_last) threads.scene.threads = 2;

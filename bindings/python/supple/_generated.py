@@ -76,7 +76,7 @@ class ImpactCertainty(enum.IntEnum):
     certain = 0
     'proven: the elements touch'
     within_tolerance = 1
-    'So close that floating point cannot decide. Only when `exact` is off, or for coordinates of more than `SceneOptions.max_exact_bits`.'
+    'So close that floating point cannot decide. Only when `exact` is off.'
 
 
 class PairStage(enum.IntEnum):
@@ -230,14 +230,12 @@ class NothingToTest(enum.IntEnum):
     no_margin = 5
     'proximity: all margins are 0, so that only elements at distance 0 are near'
     one_object = 6
-    'one object has elements, and it is not tested against itself'
-    shared_vertex = 7
-    'one object is tested against itself, but each two of its elements share a vertex'
-    all_static = 8
+    'one object has elements, and it is not tested against itself or has only one'
+    all_static = 7
     'all objects with elements are static'
-    groups = 9
-    'groups and masks, of objects or of vertices, exclude all pairs'
-    filter = 10
+    groups = 8
+    'groups and masks of objects exclude all pairs'
+    filter = 9
     'the pair filter excludes all pairs'
 
 
@@ -496,7 +494,7 @@ CONTRACTS = {
     'Scene::closest':
         'For each point the nearest triangle, or nothing when there is none within the largest distance and when the point is not finite. Takes about 1.4 µs for each of many points near a surface of 70,000 triangles, and 3.5 µs for those far away; longer for single points. Throws `Error` when the largest distance is negative or NaN, and for a signed distance when a surface is open.',
     'Scene::collision_free_step':
-        'A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of its distance at the start, `StepOptions.keep`; and the pair that ends it.\n\nA pair at distance d at the start keeps at least `keep` d. With separation s, a pair at distance d > s keeps at least s + `keep` (d - s). So a pair within the separation does not make the step 0, and one that parts does not end it. The exact step ends when the first pair is at the distance that it keeps. The returned step never exceeds the exact one, and is shorter by at most 2^-18 of it.\n\nElements that share a point at the start end the step there when the triangles around this point cut into each other just after the start, and when one leaves a face through the inner side on which it lies flat. Otherwise they end the step where they touch again, and not at all while they slide in one plane or move by the same vector. docs/guarantees.md has the exact conditions.\n\nOtherwise the step is positive. It is proven that also the positions from + t (to - from), computed in double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then the first that would touch. Pairs of more than `SceneOptions.max_exact_bits` can make it shorter.\n\nIgnores `ImpactOptions.max_time` and `skip_parting`. A step that is many times longer than the objects takes about the time of a short one, which is a few times that of `detect` for a short step. Throws `Error` when an option or a limit is out of its range.',
+        'A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of its distance at the start, `StepOptions.keep`; and the pair that ends it.\n\nA pair at distance d at the start keeps at least `keep` d. With separation s, a pair at distance d > s keeps at least s + `keep` (d - s). So a pair within the separation does not make the step 0, and one that parts does not end it. The exact step ends when the first pair is at the distance that it keeps. The returned step never exceeds the exact one, and is shorter by at most 2^-18 of it.\n\nElements that share a point at the start end the step there when the triangles around this point cut into each other just after the start, and when one leaves a face through the inner side on which it lies flat. Otherwise they end the step where they touch again, and not at all while they slide in one plane or move by the same vector. docs/guarantees.md has the exact conditions.\n\nOtherwise the step is positive. It is proven that also the positions from + t (to - from), computed in double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then the first that would touch.\n\nIgnores `ImpactOptions.max_time` and `skip_parting`. A step that is many times longer than the objects takes about the time of a short one, which is a few times that of `detect` for a short step. Throws `Error` when an option or a limit is out of its range.',
     'Scene::collision_free_steps':
         'A safe part of the step for each object, ascending, so that one pair does not stop all objects. Objects of one island move by the same part. After each island has moved by its part, or by less, nothing has crossed and every pair keeps its share as for `collision_free_step`; the islands can move in any order, or at the same time at different speeds.\n\nTwo objects that move are in one island unless every two of their elements are so far apart that what both move towards each other cannot use up their room. Objects that do not move have the step 1 and connect nothing. Takes longer than `collision_free_step`. A call that `limits` end returns one island of all objects that move. Throws `Error` as that function does.',
     'Scene::contains':

@@ -181,8 +181,6 @@ class SceneOptions(TypedDict, total=False):
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
     curves: bool | np.bool_
     'Penetration: also list the curves in which surfaces intersect, with what they enclose, a normal and a depth'
-    max_exact_bits: Whole
-    'Limit of exact arithmetic, which hostile coordinates make slow: the bits from the highest of the largest coordinate to the last of the finest. Elements of more bits that floating point cannot decide are continuous contacts within tolerance; for other contacts, objects of more bits are an error. 2098 means no limit'
     threads: Whole
     'Worker threads; 0 means one per core'
     comparison: ComparisonOptions
@@ -485,8 +483,6 @@ class SimulationOptions(TypedDict, total=False):
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
     curves: bool | np.bool_
     'Penetration: also list the curves in which surfaces intersect, with what they enclose, a normal and a depth'
-    max_exact_bits: Whole
-    'Limit of exact arithmetic, which hostile coordinates make slow: the bits from the highest of the largest coordinate to the last of the finest. Elements of more bits that floating point cannot decide are continuous contacts within tolerance; for other contacts, objects of more bits are an error. 2098 means no limit'
     threads: Whole
     'Worker threads; 0 means one per core'
     sphere_fit: SphereFit | Literal['vertices', 'minimal', 'box']
@@ -1463,7 +1459,7 @@ class UntestedKind(Record):
     __slots__ = ()
     kind: Literal['none', 'intersection', 'continuous', 'intersection,continuous', 'proximity', 'intersection,proximity', 'continuous,proximity', 'intersection,continuous,proximity', 'penetration', 'intersection,penetration', 'continuous,penetration', 'intersection,continuous,penetration', 'proximity,penetration', 'intersection,proximity,penetration', 'continuous,proximity,penetration', 'intersection,continuous,proximity,penetration']
     'Kind of contacts'
-    reason: Literal['no_objects', 'no_elements', 'not_finite', 'no_solid', 'no_motion', 'no_margin', 'one_object', 'shared_vertex', 'all_static', 'groups', 'filter']
+    reason: Literal['no_objects', 'no_elements', 'not_finite', 'no_solid', 'no_motion', 'no_margin', 'one_object', 'all_static', 'groups', 'filter']
     'Why there was nothing to test'
 
 

@@ -232,7 +232,6 @@ LEFT_OUT = {
             "ContactSide",
             "any_distance",
             "volume_kind_count",
-            "most_exact_bits",
             "most_full_levels",
             "SUPPLE_VERSION_MAJOR",
             "SUPPLE_VERSION_MINOR",

@@ -66,7 +66,6 @@ def test_options_and_their_errors():
         ("min_separation", float("nan"), "min_separation is nan"),
         ("broad_phase", 77, "automatic, octree"),
         ("contact_points", 2, "True or False"),
-        ("max_exact_bits", 10, "53 to 2098"),
         ("scene_octree_root", (1, 2), "three coordinates"),
     ]:
         with pytest.raises(supple.Error, match=message):

@@ -2,7 +2,6 @@
 
 #include "core/timer.hpp"
 #include "queries/queries.hpp"
-#include "world/exact_limit.hpp"
 
 namespace supple {
 
@@ -25,7 +24,6 @@ bool Detection::run(const Question& question, std::uint64_t max_contacts, const 
     stats.triangles_refitted += world_.refit_where_objects_meet(pairs_.jobs());
     stats.refit_seconds += stage.lap();
   }
-  check_exact_bits();
   const World::Work rebuilt = world_.rebuild_degraded(pairs_.jobs(), pairs_.boxes());
   stats.octrees_rebuilt = rebuilt.objects;
   stats.triangles_rebuilt = rebuilt.triangles;
@@ -95,13 +93,6 @@ bool Detection::find_penetrations(const PassInput& input, StepStats& stats) {
   stats.penetrations = penetration_pass_.penetrations().size();
   stats.curves = penetration_pass_.curves().curves.size();
   return true;
-}
-
-/// Impacts have a limit of their own for each pair of elements.
-void Detection::check_exact_bits() const {
-  const bool has_proximity = question_.has_proximity();
-  if (question_.has_intersections() || has_proximity)
-    check_exact_bits_of_jobs(world_, pairs_.jobs(), has_proximity);
 }
 
 void Detection::list_non_finite() {

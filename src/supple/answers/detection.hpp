@@ -23,8 +23,7 @@ class Detection {
  public:
   explicit Detection(World& world) : world_(world), pairs_(world) {}
 
-  /// Returns false when it was stopped; then there are no answers. Throws `Error` when coordinates exceed
-  /// `SceneOptions::max_exact_bits`.
+  /// Returns false when it was stopped; then there are no answers.
   bool run(const Question& question, std::uint64_t max_contacts, const StopSignal& stop, StepStats& stats);
   /// Adds the answers to `found`; the spans are valid until the next run.
   void list(DetectResult& found);
@@ -51,7 +50,6 @@ class Detection {
   bool find_impacts(const PassInput& input, StepStats& stats);
   bool find_proximity(const PassInput& input, StepStats& stats);
   bool find_penetrations(const PassInput& input, StepStats& stats);
-  void check_exact_bits() const;
   void list_non_finite();
 
   World& world_;

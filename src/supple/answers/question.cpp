@@ -7,17 +7,16 @@ namespace supple {
 
 Question question_of(const DetectRequest& request, const SceneOptions& options) {
   if (request.impact) check(*request.impact, "DetectRequest::impact");
-  Question question{
-      .contacts = with_included(request.contacts.value_or(options.contacts)),
-      .impact = {request.impact.value_or(options.impact),
-                 request.element_kinds.value_or(options.element_kinds),
-                 request.continuous_listing.value_or(options.continuous_listing), options.max_exact_bits},
-      .proximity_listing = request.proximity_listing.value_or(options.proximity_listing),
-      .contact_points = options.contact_points,
-      .colliding_vertices = options.comparison.colliding_vertices,
-      .lazy_refit = options.comparison.lazy_refit,
-      .manifolds = request.manifolds.value_or(options.manifolds),
-      .curves = request.curves.value_or(options.curves)};
+  Question question{.contacts = with_included(request.contacts.value_or(options.contacts)),
+                    .impact = {request.impact.value_or(options.impact),
+                               request.element_kinds.value_or(options.element_kinds),
+                               request.continuous_listing.value_or(options.continuous_listing)},
+                    .proximity_listing = request.proximity_listing.value_or(options.proximity_listing),
+                    .contact_points = options.contact_points,
+                    .colliding_vertices = options.comparison.colliding_vertices,
+                    .lazy_refit = options.comparison.lazy_refit,
+                    .manifolds = request.manifolds.value_or(options.manifolds),
+                    .curves = request.curves.value_or(options.curves)};
   if (request.manifolds.value_or(false) && !question.has_penetration() && !question.has_proximity())
     fail("detect: manifolds are made from penetration or proximity; request one of these contacts");
   if (request.curves.value_or(false) && !question.has_penetration())

@@ -24,8 +24,6 @@ struct ImpactSearchOptions {
   ImpactOptions impact;
   ElementKinds kinds = ElementKinds::all;
   ContinuousListing listing = ContinuousListing::all;
-  /// Exact arithmetic decides only pairs of at most so many bits.
-  std::uint32_t max_exact_bits = most_exact_bits;
 };
 
 /// Two elements that come nearer by d, and then keep less than `StepOptions::keep` of their distance, are

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "broad_phase/automatic_search.hpp"
-#include "broad_phase/brute/brute_search.hpp"
 #include "broad_phase/grid/grid_search.hpp"
 #include "broad_phase/octree/octree_search.hpp"
 #include "broad_phase/sweep/sweep_search.hpp"
@@ -39,10 +38,10 @@ std::unique_ptr<PairSearch> make_search(BroadPhaseMethod method, BoundingVolume 
       return std::make_unique<GridSearch>();
     case BroadPhaseMethod::sweep:
       refuse(options, "sweep");
-      return std::make_unique<SweepSearch>();
+      return std::make_unique<SweepSearch>(true);
     case BroadPhaseMethod::brute:
       refuse(options, "brute");
-      return std::make_unique<BruteSearch>();
+      return std::make_unique<SweepSearch>(false);
   }
   fail("broad phase: method " + std::to_string(static_cast<int>(method)) +
        " is unknown; use automatic, octree, grid, sweep or brute");

@@ -30,10 +30,8 @@ class PairList {
   std::vector<std::size_t> bin_places_;
 };
 
-/// Sorts the pairs of all workers by (a, b): into bins by the upper bits of a, then each bin. Where objects
-/// have many pairs, the bin is sorted by digits of b and by a; otherwise by a, and then each run of equal a
-/// by b. O(pairs + slots), more only where an object has between 64 and slots / 4096 pairs and most others
-/// have few.
+/// Sorts the pairs of all workers by (a, b): into bins by the upper bits of a, then each bin by digits.
+/// O(pairs + slots).
 class PairSorter {
  public:
   /// One empty list for each worker. Every slot of a pair is less than `slot_count`.
@@ -43,22 +41,14 @@ class PairSorter {
   void finish(const Parallel& parallel, std::vector<IndexPair>& sorted);
 
  private:
-  /// Memory of one worker.
-  struct Scratch {
-    std::vector<std::uint32_t> ends;   // of runs, per slot of a bin
-    std::vector<std::uint32_t> a, b;   // pairs of a bin, run after run
-    std::vector<std::uint64_t> marks;  // a bit per slot, all 0 between runs
-  };
-  void sort_bin(std::size_t bin, Scratch& scratch, IndexPair* sorted);
-  void sort_by_digits(std::span<IndexPair> pairs, std::uint32_t first_slot, Scratch& scratch,
-                      IndexPair* sorted) const;
+  void sort_bin(std::size_t bin, std::vector<std::uint32_t>& counters, IndexPair* sorted);
 
   std::size_t slot_count_ = 0;
   int shift_ = 0;  // the bin of a pair is a >> shift_
   std::vector<PairList> lists_;
   std::vector<IndexPair> binned_;
-  std::vector<std::size_t> bin_begins_;  // one more than bins
-  std::vector<Scratch> scratch_;         // per worker
+  std::vector<std::size_t> bin_begins_;               // one more than bins
+  std::vector<std::vector<std::uint32_t>> counters_;  // per worker
 };
 
 }  // namespace supple

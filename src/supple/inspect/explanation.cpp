@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
-#include "contact/distance/edge_face_crossing.hpp"
-#include "contact/distance/triangle_gap.hpp"
 #include "contact/intersection/neighbour_test.hpp"
 #include "core/error.hpp"
 #include "geometry/aabb.hpp"
@@ -14,8 +13,11 @@
 #include "inspect/inspection.hpp"
 #include "inspect/searched_volumes.hpp"
 #include "mesh/share_vertex.hpp"
+#include "queries/box_faces.hpp"
 #include "supple/distance.hpp"
 #include "supple/triangle_intersection.hpp"
+#include "verify/brute_force_proximity.hpp"
+#include "verify/plain_objects.hpp"
 
 namespace supple {
 namespace {
@@ -51,36 +53,13 @@ PairExplanation mirrored(PairExplanation explanation) {
   return explanation;
 }
 
-/// A box in double precision.
-struct Corners {
-  Vec3d low, high;
-};
-
-Corners corners_of(const Aabb& box, const Vec3d& translation) {
+QueryBox translated(const Aabb& box, const Vec3d& translation) {
   return {Vec3d{box.min.x, box.min.y, box.min.z} + translation,
           Vec3d{box.max.x, box.max.y, box.max.z} + translation};
 }
 
-Corners corners_of(const TrianglePoints& points) {
-  Corners corners{points[0], points[0]};
-  for (const Vec3d& p : points) {
-    for (int axis = 0; axis < 3; ++axis) {
-      corners.low[axis] = std::min(corners.low[axis], p[axis]);
-      corners.high[axis] = std::max(corners.high[axis], p[axis]);
-    }
-  }
-  return corners;
-}
-
-Aabb box_of(const Corners& corners) {
-  Aabb box;
-  extend(box, corners.low);
-  extend(box, corners.high);
-  return box;
-}
-
 /// Sets the axis along which the boxes are furthest apart, from a to b, and the distance along it.
-void set_gap(PairExplanation& explanation, const Corners& a, const Corners& b) {
+void set_gap(PairExplanation& explanation, const QueryBox& a, const QueryBox& b) {
   explanation.distance = -INFINITY;
   const auto consider = [&](int axis, double sign, double gap) {
     if (!(gap > explanation.distance)) return;
@@ -89,8 +68,8 @@ void set_gap(PairExplanation& explanation, const Corners& a, const Corners& b) {
     explanation.axis[axis] = sign;
   };
   for (int axis = 0; axis < 3; ++axis) {
-    consider(axis, 1, b.low[axis] - a.high[axis]);
-    consider(axis, -1, a.low[axis] - b.high[axis]);
+    consider(axis, 1, b.min[axis] - a.max[axis]);
+    consider(axis, -1, a.min[axis] - b.max[axis]);
   }
 }
 
@@ -163,7 +142,7 @@ PairExplanation objects_apart(const WorldObject& a, const WorldObject& b, Boundi
   } else {
     explanation.box_a = has_elements ? unclamped(a.box()) : a.box();
     explanation.box_b = has_elements ? unclamped(b.box()) : b.box();
-    set_gap(explanation, corners_of(explanation.box_a, {}), corners_of(explanation.box_b, {}));
+    set_gap(explanation, translated(explanation.box_a, {}), translated(explanation.box_b, {}));
     if (!has_elements && overlap(a.box(), b.box())) {
       explanation.slabs_a = object_slabs(a.resting_view());
       explanation.slabs_b = object_slabs(b.resting_view());
@@ -191,7 +170,7 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
     const Aabb a = child_box(pair.a, at.node_a, at.child_a), b = child_box(pair.b, at.node_b, at.child_b);
     explanation.box_a = moved(a, to_a);
     explanation.box_b = moved(b, to_b);
-    set_gap(explanation, corners_of(a, to_a), corners_of(b, to_b));
+    set_gap(explanation, translated(a, to_a), translated(b, to_b));
     if (!pair.a.volumes.empty() && !(explanation.distance > 0)) {
       explanation.slabs_a = child_slabs(pair.a, at.node_a, at.child_a);
       explanation.slabs_b = child_slabs(pair.b, at.node_b, at.child_b);
@@ -203,10 +182,10 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
 
 PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoints& b) {
   PairExplanation explanation{.stage = PairStage::triangle_boxes};
-  const Corners corners_a = corners_of(a), corners_b = corners_of(b);
-  explanation.box_a = box_of(corners_a);
-  explanation.box_b = box_of(corners_b);
-  set_gap(explanation, corners_a, corners_b);
+  const QueryBox box_a = box_of(a), box_b = box_of(b);
+  for (const Vec3d& corner : {box_a.min, box_a.max}) extend(explanation.box_a, corner);
+  for (const Vec3d& corner : {box_b.min, box_b.max}) extend(explanation.box_b, corner);
+  set_gap(explanation, box_a, box_b);
   return explanation;
 }
 
@@ -215,9 +194,18 @@ PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b
   // Continuous contacts do not include triangles that intersect from the start when none of their elements
   // touch.
   if (triangles_intersect(a, b)) return explanation;
-  const TriangleGap gap = triangle_gap(a, b);
-  explanation.axis = gap.axis;
-  explanation.distance = gap.distance;
+  explanation.distance = any_distance;
+  const auto consider = [&](const std::optional<ElementDistance>& found, double from_a_to_b) {
+    if (!found || found->distance > explanation.distance) return;
+    explanation.distance = found->distance;
+    explanation.axis = from_a_to_b * found->normal;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    consider(point_triangle_distance(a[i], b), -1);
+    consider(point_triangle_distance(b[i], a), 1);
+    for (std::size_t k = 0; k < 3; ++k)
+      consider(edge_edge_distance({a[i], a[(i + 1) % 3]}, {b[k], b[(k + 1) % 3]}), -1);
+  }
   return explanation;
 }
 
@@ -254,48 +242,21 @@ bool Inspection::touch_on_the_way(const ContactJob& job, TrianglePair triangles)
 
 /// Whether an element of one triangle is within the margins of an element of the other.
 bool Inspection::are_near(const ContactJob& job, TrianglePair triangles) const {
-  const WorldObject &a = world_[job.a], &b = world_[job.b];
-  const TrianglePoints p = points_of(a, triangles.a), q = points_of(b, triangles.b);
-  const Triangle &ids_a = a.octree().triangles()[triangles.a], &ids_b = b.octree().triangles()[triangles.b];
-  const VertexGroups groups_a = a.vertex_groups(), groups_b = b.vertex_groups();
-  const double reach = reach_of(job);
-  const auto may_touch = [&](const Triangle& of_a, const Triangle& of_b) {
-    return may_touch_by_groups(groups_a, of_a, groups_b, of_b);
+  const auto elements_of = [&](const WorldObject& object, std::uint32_t triangle) {
+    PlainMovingObject plain = plain_moving_object(object);
+    plain.start = plain.end;
+    plain.triangles = {object.octree().triangles()[triangle]};
+    plain.face_count = object.octree().triangle_ids()[triangle] < object.face_count() ? 1 : 0;
+    return plain;
   };
-  const auto corner = [](std::uint32_t vertex) { return Triangle{vertex, vertex, vertex}; };
-  const auto is_in = [&](std::uint32_t vertex, const Triangle& triangle) {
-    return job.a == job.b && std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
+  const auto are_some_near = [&](const PlainMovingObject& p, const PlainMovingObject& q) {
+    return !find_proximity_by_brute_force(p, q, job.a == job.b, reach_of(job), ProximityListing::features,
+                                          question().impact.kinds, world_.parallel)
+                .near.empty();
   };
-  bool used_exact = false;
-  const auto crosses = [&](std::size_t i, const TrianglePoints& of_edge, const Triangle& ids_of_edge,
-                           const TrianglePoints& face, const Triangle& ids_of_face) {
-    const std::size_t next = (i + 1) % 3;
-    if (is_in(ids_of_edge[i], ids_of_face) || is_in(ids_of_edge[next], ids_of_face)) return false;
-    return edge_crosses_face({of_edge[i], of_edge[next]}, face, used_exact);
-  };
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!is_in(ids_a[i], ids_b) && may_touch(corner(ids_a[i]), ids_b) &&
-        point_triangle_distance(p[i], q, reach))
-      return true;
-    if (!is_in(ids_b[i], ids_a) && may_touch(ids_a, corner(ids_b[i])) &&
-        point_triangle_distance(q[i], p, reach))
-      return true;
-    const std::size_t i1 = (i + 1) % 3;
-    if (question().impact.kinds == ElementKinds::all && may_touch({ids_a[i], ids_a[i1], ids_a[i]}, ids_b) &&
-        crosses(i, p, ids_a, q, ids_b))
-      return true;
-    if (question().impact.kinds == ElementKinds::all && may_touch(ids_a, {ids_b[i], ids_b[i1], ids_b[i]}) &&
-        crosses(i, q, ids_b, p, ids_a))
-      return true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t k1 = (k + 1) % 3;
-      const Triangle edge{ids_b[k], ids_b[k1], ids_b[k]};
-      if (is_in(ids_a[i], edge) || is_in(ids_a[i1], edge)) continue;
-      if (!may_touch({ids_a[i], ids_a[i1], ids_a[i]}, edge)) continue;
-      if (edge_edge_distance({p[i], p[i1]}, {q[k], q[k1]}, reach)) return true;
-    }
-  }
-  return false;
+  const PlainMovingObject p = elements_of(world_[job.a], triangles.a),
+                          q = elements_of(world_[job.b], triangles.b);
+  return are_some_near(p, q) || (job.a == job.b && are_some_near(q, p));
 }
 
 /// Follows the stages of `detect`. Triangles are in the order of the traversal.

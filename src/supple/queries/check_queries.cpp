@@ -17,14 +17,6 @@ TriangleMesh surface_of(const WorldObject& object) {
   return mesh;
 }
 
-/// `add(bits, i)` adds the numbers of query i.
-template <class Add>
-CoordinateBits bits_of_queries(const char* kind, std::size_t count, const Add& add) {
-  CoordinateBits bits(kind, "", "the largest distance");
-  for (std::size_t i = 0; i < count; ++i) add(bits, static_cast<std::uint32_t>(i));
-  return bits;
-}
-
 }  // namespace
 
 void check_distance(double distance, const char* call) {
@@ -52,29 +44,6 @@ void check_closed(const World& world, const QueryFilter& seen, const char* call)
          " has an odd number of triangles; " + advice_for_open_surface(surface) +
          ", or leave this object out");
   }
-}
-
-CoordinateBits bits_of_points(std::span<const Vec3d> points) {
-  return bits_of_queries("point", points.size(),
-                         [&](CoordinateBits& bits, std::uint32_t i) { bits.add(points[i], i); });
-}
-CoordinateBits bits_of_rays(std::span<const Ray> rays) {
-  return bits_of_queries("ray", rays.size(), [&](CoordinateBits& bits, std::uint32_t i) {
-    bits.add(rays[i].origin, i);
-    bits.add(rays[i].direction, i);
-  });
-}
-CoordinateBits bits_of_regions(std::span<const QueryBox> boxes) {
-  return bits_of_queries("box", boxes.size(), [&](CoordinateBits& bits, std::uint32_t i) {
-    bits.add(boxes[i].min, i);
-    bits.add(boxes[i].max, i);
-  });
-}
-CoordinateBits bits_of_regions(std::span<const QuerySphere> spheres) {
-  return bits_of_queries("sphere", spheres.size(), [&](CoordinateBits& bits, std::uint32_t i) {
-    bits.add(spheres[i].center, i);
-    bits.add({spheres[i].radius, 0, 0}, i);
-  });
 }
 
 }  // namespace supple

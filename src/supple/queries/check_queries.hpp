@@ -4,7 +4,6 @@
 #include <span>
 
 #include "supple/queries.hpp"
-#include "world/exact_limit.hpp"
 #include "world/world.hpp"
 
 namespace supple {
@@ -22,11 +21,5 @@ void check_closed(const World& world, const QueryFilter& seen, const char* call)
 inline bool sees(const QueryFilter& filter, ObjectId id, const ObjectOptions& options) {
   return (!filter.object || *filter.object == id) && (options.group & filter.mask) != 0;
 }
-
-// The bits of the numbers of queries.
-CoordinateBits bits_of_points(std::span<const Vec3d> points);
-CoordinateBits bits_of_rays(std::span<const Ray> rays);
-CoordinateBits bits_of_regions(std::span<const QueryBox> boxes);
-CoordinateBits bits_of_regions(std::span<const QuerySphere> spheres);
 
 }  // namespace supple

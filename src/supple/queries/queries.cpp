@@ -19,16 +19,6 @@ bool has_far_part(const Aabb& box, const Aabb& other) {
   return !box.empty() && !other.empty() && is_far(box, scaled_norm(farthest), far_ratio);
 }
 
-/// The lists of all workers in one; empty after a stop.
-template <class Worker, class Item>
-std::vector<Item> gathered(const std::vector<Worker>& workers, std::vector<Item> Worker::*list,
-                           const StopSignal& stop) {
-  std::vector<Item> all;
-  if (stop.stop_requested()) return all;
-  for (const Worker& worker : workers) all.insert(all.end(), (worker.*list).begin(), (worker.*list).end());
-  return all;
-}
-
 /// Ascending by ray. The hits of a ray stay in their order: one worker has found all of them.
 std::vector<ListedRayHit> sorted_by_ray(const std::vector<ListedRayHit>& hits) {
   std::vector<std::pair<std::uint32_t, std::size_t>> places;
@@ -93,11 +83,6 @@ void Queries::list_objects(const QueryFilter& filter, const char* call, Call& us
   }
 }
 
-void Queries::check_bits(const CoordinateBits& bits, const Call& use, const char* call) const {
-  for (const QueriedObject& object : use.objects)
-    check_exact_bits_of_queries(world_, bits, object.id.index, call);
-}
-
 /// `places` are those of the queries. Neighbours follow each other, because a search is fast where the one
 /// before it was near.
 template <class Answer>
@@ -136,11 +121,6 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
       object.fine_boxes = far.fine_boxes();
     }
   }
-  if (has_exact_limit(world_)) {
-    CoordinateBits bits = bits_of_points(points);
-    bits.add({options.max_distance, 0, 0}, CoordinateBits::no_point);
-    check_bits(bits, *use, "closest");
-  }
   const StopSignal stop = stop_of(options.limits);
   answer(points, stop, *use, [&](ObjectQueries& queries, std::size_t i) {
     results[i] = queries.closest(use->objects, points[i], options.max_distance);
@@ -158,7 +138,6 @@ void Queries::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> r
     const Lock lock(mutex_);
     list_objects(options.filter, "cast", *use);
   }
-  if (has_exact_limit(world_)) check_bits(bits_of_rays(rays), *use, "cast");
   use->origins.clear();
   for (const Ray& ray : rays) use->origins.push_back(ray.origin);
   const StopSignal stop = stop_of(options.limits);
@@ -168,24 +147,38 @@ void Queries::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> r
   if (stop.stop_requested()) std::fill(results.begin(), results.end(), std::nullopt);
 }
 
-std::vector<ListedRayHit> Queries::cast_all(std::span<const Ray> rays, const QueryFilter& filter,
-                                            const CallLimits& limits) const {
-  constexpr std::size_t grain = 64;
+/// Calls `find(queries, objects, i, list)` for all i below `count`. It appends to the list of a worker.
+/// Returns all lists in one, empty after a stop.
+template <class Item, class Find>
+std::vector<Item> Queries::find_all(std::size_t count, std::vector<Item> Worker::*list,
+                                    const QueryFilter& filter, const char* call, const CallLimits& limits,
+                                    const Find& find) const {
+  constexpr std::size_t grain = 16;
   const Lease use(*this);
   {
     const Lock lock(mutex_);
-    list_objects(filter, "cast_all", *use);
+    list_objects(filter, call, *use);
   }
-  if (has_exact_limit(world_)) check_bits(bits_of_rays(rays), *use, "cast_all");
   const StopSignal stop = stop_of(limits);
-  for (Worker& worker : use->workers) worker.hits.clear();
-  world_.parallel.for_ranges(rays.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+  for (Worker& worker : use->workers) (worker.*list).clear();
+  world_.parallel.for_ranges(count, grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     Worker& worker = use->workers[w];
     worker.queries.start(stop);
     for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i)
-      worker.queries.cast_all(use->objects, rays[i], static_cast<std::uint32_t>(i), worker.hits);
+      find(worker.queries, use->objects, static_cast<std::uint32_t>(i), worker.*list);
   });
-  return sorted_by_ray(gathered(use->workers, &Worker::hits, stop));
+  std::vector<Item> all;
+  if (stop.stop_requested()) return all;
+  for (const Worker& worker : use->workers)
+    all.insert(all.end(), (worker.*list).begin(), (worker.*list).end());
+  return all;
+}
+
+std::vector<ListedRayHit> Queries::cast_all(std::span<const Ray> rays, const QueryFilter& filter,
+                                            const CallLimits& limits) const {
+  return sorted_by_ray(find_all(rays.size(), &Worker::hits, filter, "cast_all", limits,
+                                [&](ObjectQueries& queries, const auto& objects, std::uint32_t i,
+                                    auto& found) { queries.cast_all(objects, rays[i], i, found); }));
 }
 
 void Queries::inside(std::span<const Vec3d> points, std::span<Containment> results, const QueryFilter& filter,
@@ -197,7 +190,6 @@ void Queries::inside(std::span<const Vec3d> points, std::span<Containment> resul
     check_closed(world_, filter, "inside");
     list_objects(filter, "inside", *use);
   }
-  if (has_exact_limit(world_)) check_bits(bits_of_points(points), *use, "inside");
   const StopSignal stop = stop_of(limits);
   std::fill(results.begin(), results.end(), Containment::outside);
   for (const QueriedObject& object : use->objects) find_inside(object, points, stop, results, *use);
@@ -244,22 +236,9 @@ void Queries::find_inside(const QueriedObject& object, std::span<const Vec3d> po
 template <class Region>
 std::vector<Overlap> Queries::overlaps(std::span<const Region> regions, const QueryFilter& filter,
                                        const CallLimits& limits) const {
-  constexpr std::size_t grain = 16;
-  const Lease use(*this);
-  {
-    const Lock lock(mutex_);
-    list_objects(filter, "overlaps", *use);
-  }
-  if (has_exact_limit(world_)) check_bits(bits_of_regions(regions), *use, "overlaps");
-  const StopSignal stop = stop_of(limits);
-  for (Worker& worker : use->workers) worker.overlaps.clear();
-  world_.parallel.for_ranges(regions.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    Worker& worker = use->workers[w];
-    worker.queries.start(stop);
-    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i)
-      worker.queries.overlaps(use->objects, regions[i], static_cast<std::uint32_t>(i), worker.overlaps);
-  });
-  std::vector<Overlap> found = gathered(use->workers, &Worker::overlaps, stop);
+  std::vector<Overlap> found = find_all(regions.size(), &Worker::overlaps, filter, "overlaps", limits,
+                                        [&](ObjectQueries& queries, const auto& objects, std::uint32_t i,
+                                            auto& list) { queries.overlaps(objects, regions[i], i, list); });
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -15,7 +15,6 @@
 #include "queries/object_queries.hpp"
 #include "queries/pairs/nearest_pair.hpp"
 #include "supple/queries.hpp"
-#include "world/exact_limit.hpp"
 #include "world/world.hpp"
 
 namespace supple {
@@ -90,9 +89,11 @@ class Queries {
 
   /// Refits what has moved. The caller holds the mutex.
   void refit() const;
+  template <class Item, class Find>
+  std::vector<Item> find_all(std::size_t count, std::vector<Item> Worker::*list, const QueryFilter& filter,
+                             const char* call, const CallLimits& limits, const Find& find) const;
   /// Lists the objects that the filter lets through. The caller holds the mutex.
   void list_objects(const QueryFilter& filter, const char* call, Call& use) const;
-  void check_bits(const CoordinateBits& bits, const Call& use, const char* call) const;
   /// Calls `answer(queries, i)` once for each query i.
   template <class Answer>
   void answer(std::span<const Vec3d> places, const StopSignal& stop, Call& use, const Answer& answer) const;

@@ -11,7 +11,7 @@ Scene::Implementation::Implementation(const SceneOptions& options) : world(optio
 
 ImpactSearchOptions Scene::Implementation::impact_options() const {
   const SceneOptions& options = world.options;
-  return {options.impact, options.element_kinds, options.continuous_listing, options.max_exact_bits};
+  return {options.impact, options.element_kinds, options.continuous_listing};
 }
 
 Question Scene::Implementation::question_of(const DetectRequest& request) const {

@@ -31,6 +31,13 @@ void append(const PlainMovingObject& object, std::array<std::uint32_t, 3> vertic
 
 }  // namespace
 
+std::vector<BoxedElement> boxed_faces(const PlainMovingObject& object) {
+  std::vector<BoxedElement> faces;
+  for (std::uint32_t f = 0; f < object.face_count; ++f)
+    append(object, object.triangles[f], {f, f}, FeatureKind::face, faces);
+  return faces;
+}
+
 BoxedElements boxed_elements(const PlainMovingObject& object) {
   std::vector<std::uint32_t> vertices;
   std::vector<std::array<std::uint32_t, 2>> edges;
@@ -47,8 +54,7 @@ BoxedElements boxed_elements(const PlainMovingObject& object) {
   using enum FeatureKind;
   for (const std::uint32_t v : vertices) append(object, {v, v, v}, {v, v}, vertex, elements.vertices);
   for (const auto& [v, w] : edges) append(object, {v, w, w}, {v, w}, edge, elements.edges);
-  for (std::uint32_t f = 0; f < object.face_count; ++f)
-    append(object, object.triangles[f], {f, f}, face, elements.faces);
+  elements.faces = boxed_faces(object);
   for (std::size_t f = object.face_count; f < object.triangles.size(); ++f) {
     const Triangle& extra = object.triangles[f];
     append(object, extra, {extra[0], extra[1]}, extra[0] == extra[1] ? vertex : edge, elements.faces);

@@ -42,7 +42,8 @@ struct BoxedElements {
   std::vector<BoxedElement> vertices, edges, faces;
 };
 
-/// Vertices that no triangle uses, and elements with a coordinate that is not finite, are left out.
+// Vertices that no triangle uses, and elements with a coordinate that is not finite, are left out.
+std::vector<BoxedElement> boxed_faces(const PlainMovingObject& object);
 BoxedElements boxed_elements(const PlainMovingObject& object);
 
 /// The number of vertex-face, face-vertex and edge-edge pairs; within one object, each pair once.

@@ -32,26 +32,12 @@ auto place_of(const TouchingElements& touching) {
   return std::tie(touching.kind, touching.element_a, touching.element_b);
 }
 
-}  // namespace
-
-namespace {
-
 ElementPairKind pair_kind(const BoxedElement& p, const BoxedElement& q) {
   for (unsigned kind = 0; kind < 6; ++kind) {
     const auto pair = static_cast<ElementPairKind>(kind);
     if (feature_kinds(pair) == std::array{p.kind, q.kind}) return pair;
   }
   return ElementPairKind::vertex_vertex;
-}
-
-/// The square root, also where the square is beyond the range of double.
-double rounded_root(const Rational& square) {
-  if (square == 0) return 0;
-  const auto bits = [](const auto& integer) { return static_cast<int>(msb(integer)); };
-  const int half = (bits(numerator(square)) - bits(denominator(square))) / 2;
-  const Rational factor = Rational(boost::multiprecision::cpp_int(1) << std::abs(2 * half));
-  return std::ldexp(
-      std::sqrt(static_cast<double>(half > 0 ? Rational(square / factor) : Rational(square * factor))), half);
 }
 
 /// Whether elements that touch at the start part by much more, or a little more, than `ImpactOptions` asks

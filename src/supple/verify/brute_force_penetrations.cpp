@@ -15,21 +15,16 @@
 namespace supple {
 namespace {
 
-/// The connected parts with all vertices inside and no triangle that touches.
-std::vector<ContainedPart> contained_parts(const PlainObject& inner, std::span<const std::uint32_t> touching,
+/// The connected parts of `triangles` with all vertices inside and no triangle that touches. `is_used` marks
+/// their vertices.
+std::vector<ContainedPart> contained_parts(const PlainObject& inner, std::span<const Triangle> triangles,
+                                           const std::vector<std::uint8_t>& is_used,
+                                           std::span<const std::uint32_t> touching,
                                            std::span<const ExactPenetration> found) {
   VertexSets sets(inner.positions.size());
-  std::vector<std::uint8_t> is_used(inner.positions.size(), 0), is_excluded = is_used, is_inside = is_used;
-  const auto is_finite_triangle = [&](const Triangle& triangle) {
-    return std::all_of(triangle.begin(), triangle.end(),
-                       [&](std::uint32_t v) { return is_finite(inner.positions[v]); });
-  };
-  for (const Triangle& triangle : inner.triangles) {
-    if (!is_finite_triangle(triangle)) continue;
-    for (const std::uint32_t v : triangle) {
-      is_used[v] = 1;
-      sets.join(triangle[0], v);
-    }
+  std::vector<std::uint8_t> is_excluded(inner.positions.size(), 0), is_inside = is_excluded;
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t v : triangle) sets.join(triangle[0], v);
   }
   for (const ExactPenetration& p : found) is_inside[p.vertex] = p.where == Containment::inside ? 1 : 0;
   for (const std::uint32_t t : touching) is_excluded[sets.root(inner.triangles[t][0])] = 1;
@@ -57,10 +52,12 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
                                                         const Parallel& parallel) {
   BruteForcePenetrations result;
   std::vector<std::uint8_t> is_used(inner.positions.size(), 0);
-  for (const Triangle& triangle : inner.triangles) {
-    const bool is_inert = std::any_of(triangle.begin(), triangle.end(),
-                                      [&](std::uint32_t v) { return !is_finite(inner.positions[v]); });
-    for (const std::uint32_t v : triangle) is_used[v] |= is_inert ? 0 : 1;
+  std::vector<Triangle> triangles = inner.triangles;
+  std::erase_if(triangles, [&](const Triangle& triangle) {
+    return std::ranges::any_of(triangle, [&](std::uint32_t v) { return !is_finite(inner.positions[v]); });
+  });
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t v : triangle) is_used[v] = 1;
   }
   const PlainSurface surface(outer);
   std::vector<std::vector<ExactPenetration>> found(parallel.worker_count());
@@ -83,7 +80,7 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
   for (auto& part : found) std::move(part.begin(), part.end(), std::back_inserter(result.vertices));
   std::sort(result.vertices.begin(), result.vertices.end(),
             [](const auto& p, const auto& q) { return p.vertex < q.vertex; });
-  result.parts = contained_parts(inner, touching, result.vertices);
+  result.parts = contained_parts(inner, triangles, is_used, touching, result.vertices);
   result.pairs_checked = inner.positions.size() * surface.triangles.size();
   return result;
 }

@@ -12,30 +12,9 @@
 namespace supple {
 namespace {
 
-using RationalVector = std::array<Rational, 3>;
-
-RationalVector difference(const Vec3d& p, const Vec3d& q) {
-  return {Rational(p.x) - Rational(q.x), Rational(p.y) - Rational(q.y), Rational(p.z) - Rational(q.z)};
-}
-Rational dot_of(const RationalVector& a, const RationalVector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// More than a distance that was computed in double precision, whose squares may underflow.
 double increased(double distance) {
   return distance * (1 + 0x1p-40) + 0x1p-500;
-}
-
-double length(const Vec3d& v) {
-  const double squared = dot(v, v);
-  return std::isfinite(squared) ? std::sqrt(squared) : scaled_norm(v);
-}
-
-double box_distance(const Vec3d& p, const BoxedCorners& t) {
-  Vec3d gap;
-  for (int axis = 0; axis < 3; ++axis)
-    gap[axis] = std::max({t.min[axis] - p[axis], p[axis] - t.max[axis], 0.0});
-  return length(gap);
 }
 
 /// Calls `visit(surface, triangle)` for all triangles in canonical order.
@@ -50,40 +29,19 @@ void for_each_triangle(std::span<const PlainSurface> surfaces, const Visit& visi
 
 std::optional<ExactNearest> nearest_by_brute_force(const Vec3d& point, std::span<const PlainSurface> surfaces,
                                                    double max_distance) {
-  const std::span<const Vec3d> of_point(&point, 1);
-  double bound = max_distance;
-  for_each_triangle(surfaces, [&](std::size_t, const BoxedCorners& t) {
-    for (const Vec3d& corner : t.corners) bound = std::min(bound, length(corner - point));
-  });
-  bound = increased(bound);
-  std::optional<ExactNearest> best;
-  const auto decide = [&](std::size_t surface, const BoxedCorners& t) {
-    if (box_distance(point, t) > bound || clearly_apart(of_point, t.corners, bound)) return;
-    ExactDistance found = distance_by_algebra(of_point, t.corners);
-    const auto place = [](const ExactNearest& nearest) {
-      return std::tie(nearest.surface, nearest.triangle);
-    };
-    ExactNearest nearest{surface, t.triangle, std::move(found)};
-    if (best && nearest.distance.squared > best->distance.squared) return;
-    if (best && nearest.distance.squared == best->distance.squared && place(*best) <= place(nearest)) return;
-    best = std::move(nearest);
-    bound = std::min(bound, increased(std::sqrt(best->distance.squared.convert_to<double>())));
-  };
-  // Exact arithmetic is slow: the triangle whose box is nearest gives a small bound for all others.
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t first_surface = 0;
-  const BoxedCorners* first = nullptr;
-  for_each_triangle(surfaces, [&](std::size_t surface, const BoxedCorners& t) {
-    const double distance = box_distance(point, t);
-    if (first != nullptr && distance >= least) return;
-    std::tie(least, first_surface, first) = std::tuple(distance, surface, &t);
-  });
-  if (first != nullptr) decide(first_surface, *first);
-  for_each_triangle(surfaces, decide);
+  std::optional<PlainSurface::Nearest> nearest;
+  std::size_t nearest_surface = 0;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    if (surfaces[s].triangles.empty()) continue;
+    PlainSurface::Nearest found = surfaces[s].nearest(point);
+    if (nearest && compare(found.squared, nearest->squared) >= 0) continue;
+    nearest = std::move(found);
+    nearest_surface = s;
+  }
   const bool is_bounded = max_distance <= std::numeric_limits<double>::max();
-  if (best && is_bounded && best->distance.squared > Rational(max_distance) * Rational(max_distance))
-    return {};
-  return best;
+  if (!nearest || (is_bounded && compare(nearest->squared, square_of(max_distance)) > 0)) return {};
+  const TrianglePoints& corners = surfaces[nearest_surface].triangles[nearest->place].corners;
+  return ExactNearest{nearest_surface, nearest->triangle, distance_by_algebra({&point, 1}, corners)};
 }
 
 namespace {
@@ -138,13 +96,13 @@ bool clearly_misses(const Ray& ray, const std::array<Vec3d, 2>& axes, const Tria
 /// edges, or one point inside.
 std::optional<Rational> first_parameter(const Ray& ray, const std::array<Vec3d, 2>& axes,
                                         const TrianglePoints& corners) {
-  const RationalVector direction = difference(ray.direction, {});
+  const RationalVector direction = exact(ray.direction);
   const Rational squared = dot_of(direction, direction);
   std::array<std::array<Rational, 2>, 3> flat;
   std::array<Rational, 3> t;
   for (std::size_t i = 0; i < 3; ++i) {
-    const RationalVector to_corner = difference(corners[i], ray.origin);
-    for (std::size_t k = 0; k < 2; ++k) flat[i][k] = dot_of(difference(axes[k], {}), to_corner);
+    const RationalVector to_corner = minus(exact(corners[i]), exact(ray.origin));
+    for (std::size_t k = 0; k < 2; ++k) flat[i][k] = dot_of(exact(axes[k]), to_corner);
     t[i] = dot_of(direction, to_corner) / squared;
   }
   const auto turn = [&](std::size_t i, std::size_t k) {
@@ -227,7 +185,7 @@ bool overlaps_by_brute_force(const QueryBox& box, const BoxedCorners& triangle) 
   };
   if (std::ranges::any_of(triangle.corners, has)) return true;
   std::vector<RationalVector> polygon;
-  for (const Vec3d& corner : triangle.corners) polygon.push_back(difference(corner, {}));
+  for (const Vec3d& corner : triangle.corners) polygon.push_back(exact(corner));
   for (int axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
     polygon = clipped(polygon, k, Rational(box.min[axis]), false);
@@ -239,15 +197,16 @@ bool overlaps_by_brute_force(const QueryBox& box, const BoxedCorners& triangle) 
 bool overlaps_by_brute_force(const QuerySphere& sphere, const BoxedCorners& triangle) {
   if (!is_finite(sphere.center) || !std::isfinite(sphere.radius) || sphere.radius < 0) return false;
   const double bound = increased(sphere.radius);
-  if (box_distance(sphere.center, triangle) > bound) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double center = sphere.center[axis];
+    if (triangle.min[axis] - center > bound || center - triangle.max[axis] > bound) return false;
+  }
   const bool has_corner_inside = std::ranges::any_of(triangle.corners, [&](const Vec3d& corner) {
-    return increased(length(corner - sphere.center)) < sphere.radius;
+    return increased(scaled_norm(corner - sphere.center)) < sphere.radius;
   });
   if (has_corner_inside) return true;
-  const std::span<const Vec3d> center(&sphere.center, 1);
-  if (clearly_apart(center, triangle.corners, bound)) return false;
-  return distance_by_algebra(center, triangle.corners).squared <=
-         Rational(sphere.radius) * Rational(sphere.radius);
+  return compare(squared_distance_by_integers(sphere.center, triangle.corners), square_of(sphere.radius)) <=
+         0;
 }
 
 namespace {

@@ -13,8 +13,9 @@
 #include "verify/brute_force_proximity.hpp"
 #include "verify/plain_surface.hpp"
 
-// Answers to queries, decided for `verify` over all triangles by rationals. Double precision only discards
-// what boxes or distances prove, with a slack that exceeds its rounding. Shares no code with the queries.
+// Answers to queries, decided for `verify` over all triangles by rationals and integers. Double precision
+// only discards what boxes or distances prove, with a slack that exceeds its rounding. Shares no code with
+// the queries.
 namespace supple {
 
 /// The objects that a query sees, in canonical order.

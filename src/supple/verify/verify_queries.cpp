@@ -1,9 +1,7 @@
 #include "verify/verify_queries.hpp"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -32,18 +30,6 @@ bool is_distance(double distance, const Rational& squared) {
   constexpr double largest = std::numeric_limits<double>::max();
   if (std::isinf(distance) && distance > 0) return squared > Rational(largest) * Rational(largest);
   return distance >= 0 && is_accurate(distance, squared);
-}
-
-/// The root to at least 60 bits, rounded to double: that of an integer, which is the number times a power
-/// of 4.
-double rounded_root(const Rational& squared) {
-  if (squared == 0) return 0;
-  boost::multiprecision::cpp_int over = numerator(squared), under = denominator(squared);
-  int shift = 126 + static_cast<int>(msb(under)) - static_cast<int>(msb(over));
-  shift -= shift % 2;
-  (shift > 0 ? over : under) <<= std::abs(shift);
-  const boost::multiprecision::cpp_int scaled = over / under;
-  return std::ldexp(sqrt(scaled).convert_to<double>(), -shift / 2);
 }
 
 /// Calls `check(i)` for all i below `count`, on all threads. It returns both answers when they differ.

@@ -93,10 +93,10 @@ TEST(SetDetection, AFailureChangesNothing) {
   Room room({});
   for (int step = 0; step < 20; ++step) room.simulation.step();
   const auto hash = hash_of(room.simulation.scene().result());
-  EXPECT_THROW(room.simulation.set_detection({.max_exact_bits = 1}, room.objects), Error);
+  EXPECT_THROW(room.simulation.set_detection({.threads = 2000}, room.objects), Error);
   EXPECT_THROW(room.simulation.set_detection({}, std::span(room.objects).first(3)), Error);
   EXPECT_EQ(hash_of(room.simulation.scene().result()), hash);
-  EXPECT_EQ(room.simulation.options().scene.max_exact_bits, SceneOptions{}.max_exact_bits);
+  EXPECT_NE(room.simulation.options().scene.threads, 2000u);
   room.simulation.remove(room.simulation.scene().objects().front());
   EXPECT_THROW(room.simulation.set_detection({}, room.objects), Error);
 }

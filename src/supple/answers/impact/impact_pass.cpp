@@ -13,7 +13,6 @@
 #include "contact/impact/safe_time.hpp"
 #include "core/float_rounding.hpp"
 #include "core/timer.hpp"
-#include "geometry/numbers/integer_points.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -83,18 +82,6 @@ void set_impact(ContinuousContact& contact, const Impact& impact, bool is_turned
   }
 }
 
-/// The bits of all numbers on which the impact depends.
-int bits_of(const ElementMotion& motion, double separation) {
-  BitExtent extent;
-  extent.include(separation);
-  for (const auto* moment : {&motion.start, &motion.end}) {
-    for (const Vec3d& p : *moment) {
-      for (int axis = 0; axis < 3; ++axis) extent.include(p[axis]);
-    }
-  }
-  return extent.bits();
-}
-
 }  // namespace
 
 bool ImpactPass::run(const PassInput& input, std::span<const MovingObject> objects,
@@ -138,13 +125,9 @@ void ImpactPass::start(const PassInput& input, std::span<const MovingObject> obj
   latest_of_job_.assign(jobs_.size(), 0);
 }
 
-/// With a limit of exact arithmetic, which undecided pairs a search meets must not depend on the order in
-/// which threads find impacts. So certain contacts end it first, and then it runs until a fixed time.
 const ImpactPass::Earliest* ImpactPass::search_earliest(Search search, float until,
                                                         const Parallel& parallel) {
-  only_certain_ = has_exact_limit();
   search_until(search, until, parallel);
-  if (std::exchange(only_certain_, false)) search_until(search, latest_[0], parallel);
   const Earliest* best = nullptr;
   for (const Worker& worker : workers_) {
     if (!worker.earliest) continue;
@@ -241,7 +224,8 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
 void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count,
                                    Worker& worker) {
   if (search_ == Search::safe_step || search_ == Search::free || search_ == Search::rounded) {
-    for (std::size_t k = 0; k < count; ++k) limit_step(job, kind, worker.open[k], worker);
+    for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k)
+      limit_step(job, kind, worker.open[k], worker);
     return;
   }
   const ImpactOptions options = impact_of_job(job);
@@ -259,23 +243,15 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
   for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k) {
     const OpenPair& pair = worker.open[k];
     bool used_exact = false;
-    ImpactOptions of_pair = options;
-    of_pair.exact = may_be_exact(pair, options.min_separation);
-    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, of_pair, used_exact);
+    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, options, used_exact);
     worker.stats.exact_fallbacks += used_exact ? 1 : 0;
     if (!impact) continue;
-    if (only_certain_ && impact->certainty != ImpactCertainty::certain) continue;
     if (search_ >= Search::longest && impact->touching_at_start && impact->start_distance == 0) {
       if (!touch_at_rest(pair.motion)) add_touching(job, kind, pair, worker);
       continue;
     }
     add_contact(job, kind, pair, *impact, worker);
   }
-}
-
-bool ImpactPass::may_be_exact(const OpenPair& pair, double separation) const {
-  if (!options_.impact.exact || !has_exact_limit()) return options_.impact.exact;
-  return bits_of(pair.motion, separation) <= static_cast<int>(options_.max_exact_bits);
 }
 
 /// Compares the first id of element a with the limit.
@@ -311,7 +287,7 @@ void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const Open
 void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker) {
   if (worker.earliest && !is_earlier(contact, job, worker.earliest->contact, worker.earliest->job)) return;
   worker.earliest = {contact, job};
-  if (only_certain_ || !has_exact_limit()) shorten_search(job, contact.toi);
+  shorten_search(job, contact.toi);
 }
 
 /// A reported time may be early by the tolerance. The pair with the earliest reported time may therefore

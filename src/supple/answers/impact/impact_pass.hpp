@@ -195,9 +195,6 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   void shorten_search(std::uint32_t job, double time);
   std::atomic<float>& latest_of(std::uint32_t job) { return latest_[latest_of_job_[job]]; }
   const std::atomic<float>& latest_of(std::uint32_t job) const { return latest_[latest_of_job_[job]]; }
-  bool has_exact_limit() const { return options_.max_exact_bits < most_exact_bits; }
-  /// Whether exact arithmetic may decide the pair.
-  bool may_be_exact(const OpenPair& pair, double separation) const;
   static bool is_before(const ContinuousContact& p, const ContinuousContact& q);
   static std::uint64_t place_of(std::uint32_t job, const ContinuousContact& contact);
   bool lists_first() const { return options_.listing == ContinuousListing::first; }
@@ -225,7 +222,6 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   /// The search skips pairs that cannot touch before these times; and which of them is that of each job.
   std::vector<std::atomic<float>> latest_ = std::vector<std::atomic<float>>(1);
   std::vector<std::uint32_t> latest_of_job_;
-  bool only_certain_ = false;  ///< contacts that exact arithmetic could not decide do not count
   FirstContacts first_contacts_;
 };
 

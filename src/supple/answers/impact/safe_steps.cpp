@@ -300,18 +300,17 @@ std::optional<double> ImpactPass::limit_of(std::uint32_t job, ElementPairKind ki
     for (std::size_t i = 0; i < 4; ++i)
       motion.end[i] = rounded_position(motion.start[i], motion.end[i], part);
     const RelativeMotion relative = relative_motion(motion);
-    ImpactOptions options;
-    options.exact = may_be_exact(pair, 0);
     bool used_exact = false;
-    const auto impact = first_impact_after(search_impact(relative, 0), motion, relative, options, used_exact);
+    const auto impact =
+        first_impact_after(search_impact(relative, 0), motion, relative, impact_of_job(job), used_exact);
     return impact && !impact->touching_at_start ? std::optional(0.5) : std::nullopt;
   }
-  const double until = latest_of(job).load(std::memory_order_relaxed), latest = has_exact_limit() ? 1 : until;
-  const SafeTime found = safe_time(pair.motion, kept, latest, may_be_exact(pair, kept.separation));
+  const double latest = latest_of(job).load(std::memory_order_relaxed);
+  const SafeTime found = safe_time(pair.motion, kept, latest, options_.impact.exact);
   worker.stats.exact_fallbacks += found.used_exact ? 1 : 0;
   if (found.touches) add_touching(job, kind, pair, worker);
   const bool is_near =
-      found.touches || !(found.least_distance > rounding_of_job(job) + until * growth_of_rounding(job));
+      found.touches || !(found.least_distance > rounding_of_job(job) + latest * growth_of_rounding(job));
   if (is_near && (worker.near_jobs.empty() || worker.near_jobs.back() != job))
     worker.near_jobs.push_back(job);
   return found.time;
@@ -332,7 +331,7 @@ void ImpactPass::limit_step(std::uint32_t job, ElementPairKind kind, const OpenP
   } else {
     return;
   }
-  if (search_ != Search::rounded && !has_exact_limit()) shorten_search(job, *time);
+  if (search_ != Search::rounded) shorten_search(job, *time);
 }
 
 /// The order of limits: by job, then by time.

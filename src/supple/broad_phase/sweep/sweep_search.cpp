@@ -31,13 +31,13 @@ int widest_axis(std::span<const Aabb> boxes) {
 
 void SweepSearch::search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
   const auto boxes = volumes.boxes();
-  const int axis = widest_axis(boxes);
+  const int axis = sorts_ ? widest_axis(boxes) : 0;
   order_.clear();
   for (std::uint32_t slot = 0; slot < boxes.size(); ++slot)
     if (!boxes[slot].empty()) order_.push_back(order_key(boxes[slot].min[axis], slot));
-  std::sort(order_.begin(), order_.end());
+  if (sorts_) std::sort(order_.begin(), order_.end());
   lanes_.resize(order_.size());
-  lanes_.is_sorted = true;
+  lanes_.is_sorted = sorts_;
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const auto slot = static_cast<std::uint32_t>(order_[i]);
     lanes_.set(i, slot, boxes[slot], marks_of(volumes, slot), axis);
@@ -45,7 +45,7 @@ void SweepSearch::search(const VolumeStore& volumes, const Parallel& parallel, F
 
   const auto lists = sorter_.start(parallel.worker_count(), boxes.size());
   std::atomic<std::uint64_t> tests = 0;
-  constexpr std::size_t grain = 256;
+  constexpr std::size_t grain = 64;
   parallel.for_ranges(order_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
     tests += find_overlaps(lanes_, begin, end, volumes, lists[worker]);
   });

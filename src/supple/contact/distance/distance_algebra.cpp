@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -9,18 +10,6 @@
 
 namespace supple {
 namespace {
-
-using RationalVector = std::array<Rational, 3>;
-
-RationalVector exact(const Vec3d& v) {
-  return {Rational(v.x), Rational(v.y), Rational(v.z)};
-}
-RationalVector minus(const RationalVector& a, const RationalVector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Rational dot_of(const RationalVector& a, const RationalVector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// A part of an element: its vertices by index, and its place in the order of ties.
 struct Part {
@@ -125,7 +114,7 @@ bool cross_by_algebra(const std::array<Vec3d, 2>& edge, const std::array<Vec3d, 
                        u = minus(exact(face[1]), corner), v = minus(exact(face[2]), corner),
                        w = minus(corner, start);
   const auto determinant = [](const RationalVector& x, const RationalVector& y, const RationalVector& z) {
-    return dot_of(x, {y[1] * z[2] - y[2] * z[1], y[2] * z[0] - y[0] * z[2], y[0] * z[1] - y[1] * z[0]});
+    return dot_of(x, cross_of(y, z));
   };
   const Rational whole = determinant(along, u, v);
   if (whole == 0) return false;
@@ -141,6 +130,17 @@ bool is_accurate(double distance, const Rational& squared) {
     high = std::nextafter(high, std::numeric_limits<double>::infinity());
   }
   return Rational(low) * Rational(low) <= squared && squared <= Rational(high) * Rational(high);
+}
+
+/// The root of an integer, which is the number times a power of 4.
+double rounded_root(const Rational& squared) {
+  if (squared == 0) return 0;
+  boost::multiprecision::cpp_int over = numerator(squared), under = denominator(squared);
+  int shift = 126 + static_cast<int>(msb(under)) - static_cast<int>(msb(over));
+  shift -= shift % 2;
+  (shift > 0 ? over : under) <<= std::abs(shift);
+  const boost::multiprecision::cpp_int scaled = over / under;
+  return std::ldexp(sqrt(scaled).convert_to<double>(), -shift / 2);
 }
 
 }  // namespace supple

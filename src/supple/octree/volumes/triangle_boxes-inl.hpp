@@ -203,24 +203,7 @@ HWY_INLINE void set_child(ChildBoxes& children, int child, const Box& box) {
   set_child(children, child, lower, upper);
 }
 
-#if HWY_TARGET == HWY_SCALAR
-
-/// Boxes `first` to `first` + 3 of six arrays become the given ones.
-template <class Arrays, class Box>
-HWY_INLINE void set_four_boxes(Arrays& arrays, std::size_t first, const Box (&boxes)[4]) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    float lower[3], upper[3];
-    boxes[i].store(lower, upper);
-    arrays.min_x[first + i] = lower[0];
-    arrays.min_y[first + i] = lower[1];
-    arrays.min_z[first + i] = lower[2];
-    arrays.max_x[first + i] = upper[0];
-    arrays.max_y[first + i] = upper[1];
-    arrays.max_z[first + i] = upper[2];
-  }
-}
-
-#else
+#if HWY_TARGET != HWY_SCALAR
 
 /// x y z of four corners become four x, four y and four z.
 HWY_INLINE void store_transposed(hn::Vec<FloatBox::Tag> p, hn::Vec<FloatBox::Tag> q, hn::Vec<FloatBox::Tag> r,
@@ -233,20 +216,11 @@ HWY_INLINE void store_transposed(hn::Vec<FloatBox::Tag> p, hn::Vec<FloatBox::Tag
   hn::StoreU(hn::ConcatLowerLower(tag, z_rs, z_pq), tag, z);
 }
 
-/// Boxes `first` to `first` + 3 of six arrays become the given ones.
-template <class Arrays, class Box>
-HWY_INLINE void set_four_boxes(Arrays& arrays, std::size_t first, const Box (&boxes)[4]) {
-  store_transposed(boxes[0].lower(), boxes[1].lower(), boxes[2].lower(), boxes[3].lower(),
-                   arrays.min_x + first, arrays.min_y + first, arrays.min_z + first);
-  store_transposed(boxes[0].upper(), boxes[1].upper(), boxes[2].upper(), boxes[3].upper(),
-                   arrays.max_x + first, arrays.max_y + first, arrays.max_z + first);
-}
-
 #endif
 
 /// Boxes `first` to `first` + 3 of six arrays (min x, y, z, max x, y, z) become the given ones.
-template <class Box, std::size_t size>
-HWY_INLINE void store_four_boxes(const Box (&boxes)[4], float (&arrays)[6][size], std::size_t first) {
+template <class Box, class Arrays>
+HWY_INLINE void store_four_boxes(const Box (&boxes)[4], Arrays& arrays, std::size_t first) {
 #if HWY_TARGET == HWY_SCALAR
   for (std::size_t i = 0; i < 4; ++i) {
     float lower[3], upper[3];
@@ -262,6 +236,12 @@ HWY_INLINE void store_four_boxes(const Box (&boxes)[4], float (&arrays)[6][size]
   store_transposed(boxes[0].upper(), boxes[1].upper(), boxes[2].upper(), boxes[3].upper(), arrays[3] + first,
                    arrays[4] + first, arrays[5] + first);
 #endif
+}
+
+template <class Boxes, class Box>
+HWY_INLINE void set_four_boxes(Boxes& all, std::size_t first, const Box (&boxes)[4]) {
+  float* const arrays[] = {all.min_x, all.min_y, all.min_z, all.max_x, all.max_y, all.max_z};
+  store_four_boxes(boxes, arrays, first);
 }
 
 HWY_INLINE void invert_children_from(ChildBoxes& children, int first) {

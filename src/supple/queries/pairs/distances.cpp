@@ -96,7 +96,6 @@ std::optional<ProximityPair> Queries::distance(ObjectId a, ObjectId b, const Cal
     refit();
     prepare(near);
   }
-  check_exact_bits_of_pairs(world_, {&near.pair, 1}, "distance");
   const StopSignal stop = stop_of(limits);
   find(near, any_distance, stop, use->workers.front().pair_search);
   if (stop.stop_requested()) return {};
@@ -115,7 +114,6 @@ bool Queries::any_contact(ObjectId a, ObjectId b, const CallLimits& limits) cons
     const Lock lock(mutex_);
     refit();
   }
-  check_exact_bits_of_pairs(world_, {&pair, 1}, "any_contact");
   const StopSignal stop = stop_of(limits);
   const bool found = use->workers.front().pair_search.any_contact(queried_object(world_, pair.a.index),
                                                                   queried_object(world_, pair.b.index), stop);
@@ -159,11 +157,6 @@ std::vector<ProximityPair> Queries::distances(double max_distance, const CallLim
   {
     const Lock lock(mutex_);
     for (NearObjects& objects : near) prepare(objects);
-  }
-  if (has_exact_limit(world_)) {
-    std::vector<ObjectPair> pairs;
-    for (const NearObjects& objects : near) pairs.push_back(objects.pair);
-    check_exact_bits_of_pairs(world_, pairs, "distances");
   }
   const StopSignal stop = stop_of(limits);
   world_.parallel.for_ranges(near.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
