@@ -315,8 +315,8 @@ struct Description<SceneOptions> {
     visitor(Field<Options, bool>{
         .name = "curves",
         .member = &Options::curves,
-        .doc = "Penetration: also list the curves in which surfaces intersect, with what they enclose, a "
-               "normal and a depth"});
+        .doc = "List the curves in which surfaces intersect, with what they enclose, a normal and a depth, "
+               "for penetration"});
     visitor(Field<Options, std::uint32_t>{.name = "threads",
                                           .member = &Options::threads,
                                           .doc = "Worker threads; 0 means one per core",

@@ -180,7 +180,7 @@ class SceneOptions(TypedDict, total=False):
     manifolds: bool | np.bool_
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
     curves: bool | np.bool_
-    'Penetration: also list the curves in which surfaces intersect, with what they enclose, a normal and a depth'
+    'List the curves in which surfaces intersect, with what they enclose, a normal and a depth, for penetration'
     threads: Whole
     'Worker threads; 0 means one per core'
     comparison: ComparisonOptions
@@ -482,7 +482,7 @@ class SimulationOptions(TypedDict, total=False):
     manifolds: bool | np.bool_
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
     curves: bool | np.bool_
-    'Penetration: also list the curves in which surfaces intersect, with what they enclose, a normal and a depth'
+    'List the curves in which surfaces intersect, with what they enclose, a normal and a depth, for penetration'
     threads: Whole
     'Worker threads; 0 means one per core'
     sphere_fit: SphereFit | Literal['vertices', 'minimal', 'box']
@@ -563,7 +563,7 @@ class DetectRequest(TypedDict, total=False):
     manifolds: bool | np.bool_
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
     curves: bool | np.bool_
-    'Penetration: also list the curves in which surfaces intersect, with what they enclose, a normal and a depth'
+    'List the curves in which surfaces intersect, with what they enclose, a normal and a depth, for penetration'
     min_separation: Number
     'Continuous contacts: distance at which two elements count as touching'
     exact: bool | np.bool_ | Literal['report', 'exact']
