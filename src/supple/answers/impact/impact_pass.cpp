@@ -165,7 +165,7 @@ void ImpactPass::search_until(Search search, float until, const Parallel& parall
 
 ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
   ImpactOptions impact = options_.impact;
-  if (search_ == Search::touching || search_ == Search::rounded) return {.exact = impact.exact};
+  if (search_ == Search::touching) return {.exact = impact.exact};
   impact.min_separation = separation_of(impact.min_separation, objects_[jobs_[job].a].min_separation,
                                         objects_[jobs_[job].b].min_separation);
   return impact;
@@ -240,7 +240,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
 /// A vector kernel decides most pairs that touch; the scalar search decides the others.
 void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count,
                                    Worker& worker) {
-  if (search_ == Search::safe_step || search_ == Search::free || search_ == Search::rounded) {
+  if (search_ == Search::safe_step || search_ == Search::free) {
     for (std::size_t k = 0; k < count; ++k) limit_step(job, kind, worker.open[k], worker);
     return;
   }
@@ -260,22 +260,22 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
     const OpenPair& pair = worker.open[k];
     bool used_exact = false;
     ImpactOptions of_pair = options;
-    of_pair.exact = may_be_exact(pair, options.min_separation);
+    of_pair.exact = may_be_exact(pair.motion, options.min_separation);
     const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, of_pair, used_exact);
     worker.stats.exact_fallbacks += used_exact ? 1 : 0;
     if (!impact) continue;
     if (only_certain_ && impact->certainty != ImpactCertainty::certain) continue;
     if (search_ >= Search::longest && impact->touching_at_start && impact->start_distance == 0) {
-      if (!touch_at_rest(pair.motion)) add_touching(job, kind, pair, worker);
+      if (search_ == Search::longest && !touch_at_rest(pair.motion)) add_near(job, kind, pair, true, worker);
       continue;
     }
     add_contact(job, kind, pair, *impact, worker);
   }
 }
 
-bool ImpactPass::may_be_exact(const OpenPair& pair, double separation) const {
+bool ImpactPass::may_be_exact(const ElementMotion& motion, double separation) const {
   if (!options_.impact.exact || !has_exact_limit()) return options_.impact.exact;
-  return bits_of(pair.motion, separation) <= static_cast<int>(options_.max_exact_bits);
+  return bits_of(motion, separation) <= static_cast<int>(options_.max_exact_bits);
 }
 
 /// Compares the first id of element a with the limit.
@@ -309,9 +309,9 @@ void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const Open
 }
 
 void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker) {
+  if (only_certain_ || !has_exact_limit()) shorten_search(job, contact.toi);
   if (worker.earliest && !is_earlier(contact, job, worker.earliest->contact, worker.earliest->job)) return;
   worker.earliest = {contact, job};
-  if (only_certain_ || !has_exact_limit()) shorten_search(job, contact.toi);
 }
 
 /// A reported time may be early by the tolerance. The pair with the earliest reported time may therefore

@@ -119,14 +119,16 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
   const ScaledMotion scaled(motion, kept);
   const RelativeMotion relative = relative_motion(scaled.motion);
   const DistanceBounds start = distance_bounds(relative, 0);
-  if (start.low == 0 && are_within(motion, 0)) {
+  ElementMotion at_start = motion;
+  at_start.end = at_start.start;
+  if (start.low == 0 && exact_first_contact(at_start)) {
     constexpr double any = std::numeric_limits<double>::infinity();
     return {{}, any, false, !touch_at_rest(motion)};
   }
   const bool beyond = is_beyond(start, scaled, motion, kept);
   const KeptBounds least = kept_bounds(start, scaled.kept, beyond);
   const double approach = largest_approach(scaled.motion);
-  SafeTime result{{}, std::max(least.low, start.low - approach) / scaled.factor, false, false};
+  SafeTime result{{}, std::max(least.low, start.low - latest * approach) / scaled.factor, false, false};
   if (approach < least_room(start, scaled.kept, beyond)) return result;
   const ImpactSearch search = search_impact(relative, least.high);
   if (search.outcome == ImpactSearch::Outcome::apart) return result;
@@ -158,6 +160,14 @@ double free_part(const ElementMotion& motion, const KeptDistance& kept, double r
 }
 
 bool touch_at_rest(const ElementMotion& motion) {
+  const auto moves_with = [&](std::size_t i, std::size_t k) {
+    return have_same_way(motion.start[i], motion.end[i], motion.start[k], motion.end[k]);
+  };
+  std::size_t same = 0;
+  for (std::size_t i = 0, count = motion.are_edges ? 2 : 1; i < count; ++i) {
+    for (std::size_t k = count; k < 4; ++k) same += moves_with(i, k) ? 1 : 0;
+  }
+  if (same == 0 || same == (motion.are_edges ? 4u : 3u)) return same != 0;
   bool used_exact = false;
   const auto touching =
       closest_features_within(element_points(motion.start, motion.are_edges), 0, used_exact);
@@ -165,9 +175,6 @@ bool touch_at_rest(const ElementMotion& motion) {
   const bool are_vertices = touching->kind == ClosestFeatures::Kind::vertices;
   const std::array<std::size_t, 3> vertices{touching->vertex, touching->edge[0],
                                             are_vertices ? touching->vertex : touching->edge[1]};
-  const auto moves_with = [&](std::size_t i, std::size_t k) {
-    return have_same_way(motion.start[i], motion.end[i], motion.start[k], motion.end[k]);
-  };
   if (touching->kind == ClosestFeatures::Kind::interiors)
     return moves_with(1, 0) && moves_with(2, 0) && moves_with(3, 0);
   return moves_with(vertices[1], vertices[0]) && moves_with(vertices[2], vertices[0]);

@@ -15,7 +15,7 @@ struct SafeTime {
   /// Never later than the first time at which the elements are at the distance that they keep, and earlier by
   /// at most 2^-18 of it; nothing when they are farther apart in the whole step.
   std::optional<double> time;
-  /// A lower bound of their distance up to `time`, or in the whole step.
+  /// A lower bound of their distance up to `latest`, or up to `time` when that is earlier.
   double least_distance = 0;
   bool used_exact = false;
   /// The elements touch at the start and do not move together. The start is no time that limits the step:
