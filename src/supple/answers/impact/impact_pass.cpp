@@ -134,6 +134,7 @@ void ImpactPass::start(const PassInput& input, std::span<const MovingObject> obj
                        const ImpactSearchOptions& options) {
   begin(input.jobs, objects, input.stop);
   options_ = options;
+  work_ = {};
   limit_.start(ContactLimit::unlimited, 0);
   latest_of_job_.assign(jobs_.size(), 0);
 }
@@ -157,6 +158,7 @@ const ImpactPass::Earliest* ImpactPass::search_earliest(Search search, float unt
 void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel) {
   search_ = search;
   run_tasks(jobs, parallel);
+  add_stats(workers_, 0, work_);
 }
 void ImpactPass::search_until(Search search, float until, const Parallel& parallel) {
   latest_[0] = until;

@@ -113,6 +113,8 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   std::vector<ObjectStep> find_safe_steps(const PassInput& input, std::span<const MovingObject> objects,
                                           const ImpactSearchOptions& options, const StepOptions& step);
 
+  /// What the searches of the last call for a step or the earliest contact tested.
+  const StepStats& work() const { return work_; }
   std::span<const ContinuousContact> contacts() const {
     return lists_first() ? first_contacts_.contacts() : records_;
   }
@@ -213,6 +215,7 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   ImpactSearchOptions options_;
   std::optional<StepOptions> step_;      // nothing for the longest step
   ImpactSearchOptions last_options_;     // of the last `run`
+  StepStats work_;                       // of the searches besides `run`
   std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
   // Safe steps: the first limit of each job, and by object the islands as a forest. Each object points to one
   // of its island with a smaller index, or to itself; then it has the island's step.
