@@ -136,7 +136,7 @@ class Parting {
   static Path normal(const Corners& corners) { return cross(side(corners, 0), side(corners, 1)); }
 
   /// The sides of points from origins.
-  Sides sides_of(const Corners& points, std::span<const Path> origins, const Path& n) const {
+  Sides sides_of(std::span<const Path> points, std::span<const Path> origins, const Path& n) const {
     Sides sides;
     for (const Path& p : points) {
       for (const Path& q : origins) {
@@ -147,10 +147,13 @@ class Parting {
     }
     return sides;
   }
+  /// Both ends of a side are at one place along a normal to it, so one of them is enough.
   bool are_separated_along_sides() const {
+    const auto& [a, b] = corners_;
     for (std::size_t i = 0; i < 9; ++i) {
-      const Path n = cross(side(corners_[0], i / 3), side(corners_[1], i % 3));
-      if (!is_zero(n) && !sides_of(corners_[0], corners_[1], n).are_mixed()) return true;
+      const Path n = cross(side(a, i / 3), side(b, i % 3));
+      const std::array<Path, 2> of_a{a[i / 3], a[(i / 3 + 2) % 3]}, of_b{b[i % 3], b[(i % 3 + 2) % 3]};
+      if (!is_zero(n) && !sides_of(of_a, of_b, n).are_mixed()) return true;
     }
     return false;
   }
@@ -159,7 +162,8 @@ class Parting {
     for (std::size_t i = 0; i < 3; ++i) {
       if (is_zero(side(a, i))) continue;
       const Path outward = cross(side(a, i), n);
-      const Sides own = sides_of(a, {&a[i], 1}, outward), others = sides_of(b, {&a[i], 1}, outward);
+      const Sides own = sides_of({&a[(i + 2) % 3], 1}, {&a[i], 1}, outward),
+                  others = sides_of(b, {&a[i], 1}, outward);
       if ((!own.above && !others.below) || (!own.below && !others.above)) return false;
     }
     return true;

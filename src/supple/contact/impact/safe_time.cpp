@@ -103,18 +103,22 @@ bool have_same_way(const Vec3d& start, const Vec3d& end, const Vec3d& start_of_o
   return true;
 }
 
-}  // namespace
-
-double largest_approach(const ElementMotion& motion) {
+/// The most by which points of the elements come nearer along a direction from the second to the first, where
+/// each element moves by at least `least` towards the other.
+double approach_along(const Vec3d& direction, const ElementMotion& motion, double least) {
   const std::array<Vec3d, 4> ways = ways_of(motion);
-  double largest = 0;
-  const std::size_t count = motion.are_edges ? 2 : 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = count; k < 4; ++k) largest = std::max(largest, scaled_norm(ways[i] - ways[k]));
+  double most_a = least, most_b = least;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool is_of_a = i < (motion.are_edges ? 2u : 1u);
+    double& most = is_of_a ? most_a : most_b;
+    most = std::max(most, dot(is_of_a ? -1.0 * ways[i] : ways[i], direction));
   }
-  return largest * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways);
+  return std::max(most_a + most_b, 0.0) * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways);
 }
 
+}  // namespace
+
+/// Along the direction between the closest points at the start, they come nearer by at most `approach`.
 SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double latest, bool exact) {
   const ScaledMotion scaled(motion, kept);
   const RelativeMotion relative = relative_motion(scaled.motion);
@@ -127,9 +131,10 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
   }
   const bool beyond = is_beyond(start, scaled, motion, kept);
   const KeptBounds least = kept_bounds(start, scaled.kept, beyond);
-  const double approach = largest_approach(scaled.motion);
+  constexpr double any_way = -std::numeric_limits<double>::max() / 4;
+  const double approach = approach_along(start.direction, scaled.motion, any_way);
   SafeTime result{{}, std::max(least.low, start.low - latest * approach) / scaled.factor, false, false};
-  if (approach < least_room(start, scaled.kept, beyond)) return result;
+  if (start.low - approach > least.high) return result;
   const ImpactSearch search = search_impact(relative, least.high);
   if (search.outcome == ImpactSearch::Outcome::apart) return result;
   result.time = search.time;
@@ -145,15 +150,7 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
 double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding, double growth) {
   const ScaledMotion scaled(motion, kept);
   const DistanceBounds start = distance_bounds(relative_motion(scaled.motion), 0);
-  const std::array<Vec3d, 4> ways = ways_of(scaled.motion);
-  double most_a = 0, most_b = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const bool is_of_a = i < (motion.are_edges ? 2u : 1u);
-    double& most = is_of_a ? most_a : most_b;
-    most = std::max(most, dot(is_of_a ? -1.0 * ways[i] : ways[i], start.direction));
-  }
-  const double approach =
-      (most_a + most_b) * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways) + 2 * growth * scaled.factor;
+  const double approach = approach_along(start.direction, scaled.motion, 0) + 2 * growth * scaled.factor;
   const double room =
       least_room(start, scaled.kept, is_beyond(start, scaled, motion, kept)) - 2 * rounding * scaled.factor;
   return approach > 0 ? std::clamp(room / approach * (1 - 0x1p-40), 0.0, 1.0) : 1;
