@@ -27,7 +27,6 @@
 #include "contact/impact/impact_search.hpp"
 #include "contact/impact/safe_time.hpp"
 #include "core/float_rounding.hpp"
-#include "core/sort_once.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 
@@ -147,14 +146,14 @@ std::vector<ObjectStep> ImpactPass::find_safe_steps(const PassInput& input,
   prove_rounded_positions({}, input.parallel);
   if (stop_.stop_requested()) {
     // All that move are one island, of the first of them.
-    const auto first = std::ranges::find_if(objects, [](const MovingObject& object) {
-      return object.ways != nullptr && object.ways->longest > 0;
-    });
-    const auto root = static_cast<std::uint32_t>(first - objects.begin());
-    for (std::uint32_t object = 0; object < objects.size(); ++object)
-      island_[object] = objects[object].ways != nullptr && moves(object) ? root : object;
+    auto root = static_cast<std::uint32_t>(objects.size());
     safe_.assign(objects.size(), {1, {}, true});
-    if (root < objects.size()) safe_[root].step = 0;
+    for (std::uint32_t object = 0; object < objects.size(); ++object) {
+      const bool is_moving = objects[object].ways != nullptr && moves(object);
+      if (is_moving) root = std::min(root, object);
+      if (is_moving) safe_[object].step = 0;
+      island_[object] = is_moving ? root : object;
+    }
   }
   std::vector<ObjectStep> steps;
   for (std::uint32_t object = 0; object < objects.size(); ++object) {

@@ -17,43 +17,9 @@
 #include "contact/impact/first_impact.hpp"
 #include "contact/impact/parting.hpp"
 #include "core/sort_once.hpp"
+#include "mesh/vertex_triangles.hpp"
 
 namespace supple {
-namespace {
-
-/// The faces of an object by their vertices.
-class FacesOfVertices {
- public:
-  explicit FacesOfVertices(const MovingObject& object)
-      : faces_(object.view.moving.face_ids, object.triangle_ids.size()),
-        first_(object.vertex_ids.size() + 1) {
-    for (const Triangle& face : faces_) {
-      for (const std::uint32_t vertex : face) ++first_[vertex];
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    numbers_.resize(first_.back());
-    for (std::uint32_t face = 0; face < faces_.size(); ++face) {
-      for (const std::uint32_t vertex : faces_[face]) numbers_[--first_[vertex]] = face;
-    }
-  }
-
-  /// Calls `visit(face)` for the faces with all of these vertices, some twice where corners are repeated.
-  template <class Visit>
-  void for_each(std::span<const std::uint32_t> vertices, const Visit& visit) const {
-    for (std::uint32_t i = first_[vertices[0]]; i < first_[vertices[0] + 1]; ++i) {
-      const Triangle& face = faces_[numbers_[i]];
-      if (std::ranges::all_of(vertices, [&](std::uint32_t v) { return std::ranges::count(face, v) > 0; }))
-        visit(numbers_[i]);
-    }
-  }
-
- private:
-  std::span<const Triangle> faces_;
-  std::vector<std::uint32_t> first_, numbers_;
-};
-
-}  // namespace
-
 void ImpactPass::add_near(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, bool touches,
                           Worker& worker) {
   const MovingObject &a = objects_[jobs_[job].a], &b = objects_[jobs_[job].b];
@@ -78,9 +44,16 @@ std::vector<std::uint32_t> ImpactPass::list_near() {
 
 void ImpactPass::limit_near(std::span<const std::uint32_t> pairs, std::optional<double> failing,
                             const Parallel& parallel) {
-  std::map<std::uint32_t, FacesOfVertices> faces;  // by slot
-  const auto faces_of = [&](std::uint32_t slot) -> const FacesOfVertices& {
-    return faces.try_emplace(slot, objects_[slot]).first->second;
+  std::map<std::uint32_t, VertexTriangles> around;  // by slot
+  const auto for_each_face = [&](std::uint32_t slot, std::span<const std::uint32_t> vertices,
+                                 const auto& visit) {
+    const std::span faces(objects_[slot].view.moving.face_ids, objects_[slot].triangle_ids.size());
+    const auto of_slot =
+        around.try_emplace(slot, faces, std::span<const std::uint8_t>(), objects_[slot].vertex_ids.size());
+    for (const std::uint32_t face : of_slot.first->second.around(vertices[0])) {
+      const auto is_corner = [&](std::uint32_t v) { return std::ranges::count(faces[face], v) > 0; };
+      if (std::ranges::all_of(vertices, is_corner)) visit(face);
+    }
   };
   struct TrianglesOfJob {
     std::uint32_t job, a, b;
@@ -94,8 +67,8 @@ void ImpactPass::limit_near(std::span<const std::uint32_t> pairs, std::optional<
     const auto [a, b] = jobs_[near.limit.job];
     const std::span<const std::uint32_t> all(near.vertices);
     const std::size_t count = near.motion.are_edges ? 2 : 1;
-    faces_of(near.is_turned ? b : a).for_each(all.first(count), [&](std::uint32_t p) {
-      faces_of(near.is_turned ? a : b).for_each(all.subspan(count), [&](std::uint32_t q) {
+    for_each_face(near.is_turned ? b : a, all.first(count), [&](std::uint32_t p) {
+      for_each_face(near.is_turned ? a : b, all.subspan(count), [&](std::uint32_t q) {
         triangles.push_back({near.limit.job, near.is_turned ? q : p, near.is_turned ? p : q, i});
       });
     });
@@ -106,14 +79,6 @@ void ImpactPass::limit_near(std::span<const std::uint32_t> pairs, std::optional<
   };
   triangles.erase(std::unique(triangles.begin(), triangles.end(), is_same), triangles.end());
 
-  const auto next_contact = [](const ElementMotion& motion) {
-    const std::optional<TimeBracket> next = exact_next_contact(motion);
-    return next ? std::optional(next->low) : std::nullopt;
-  };
-  const auto first_contact = [&](const ElementMotion& motion) {
-    bool used_exact = false;
-    return first_time_within(motion, relative_motion(motion), 0, may_be_exact(motion, 0), used_exact);
-  };
   /// Replaces ends by rounded positions. Returns whether there is something new to decide.
   const auto round_ends = [&](auto& motion, std::uint32_t job) {
     bool is_new = !failing;
@@ -155,8 +120,13 @@ void ImpactPass::limit_near(std::span<const std::uint32_t> pairs, std::optional<
       ElementMotion motion = pair.motion;
       double& time = times[pairs[i]];
       if (!(pair.touches || failing) || time == 0 || !round_ends(motion, pair.limit.job)) continue;
-      const std::optional<double> next = pair.touches ? next_contact(motion) : first_contact(motion);
-      if (next) time = std::min(time, failing.value_or(*next));
+      bool used_exact = false;
+      if (!pair.touches) {
+        const RelativeMotion relative = relative_motion(motion);
+        if (first_time_within(motion, relative, 0, may_be_exact(motion, 0), used_exact)) time = *failing;
+      } else if (const std::optional<TimeBracket> next = exact_next_contact(motion)) {
+        time = std::min(time, failing.value_or(next->low));
+      }
     }
   });
   for (const std::uint32_t i : pairs) {

@@ -211,21 +211,20 @@ bool part_after_start(const MovingTriangle& a, const MovingTriangle& b) {
       }
     }
   }
-  // Products of up to four differences are multiples of 2^-608 and below 2^364.
+  // The largest numbers are sums of fewer than 256 products of three or four differences.
+  constexpr auto most = [](int limbs) { return (limbs * 64 - 1 - 8) / 4 - 2; };
   const BitRange range(coordinates);
+  if (range.width > most(12)) return false;
+  // Products of up to four differences are multiples of 2^-608 and below 2^364.
   if (range.lowest >= -152 && range.lowest + range.width <= 90) {
     const Parting<TrackedDouble> tracked(coordinates, [](double x) { return TrackedDouble{x}; });
     if (const std::optional<bool> known = tracked.part(a.moves, b.moves)) return *known;
   }
-  // The largest numbers are sums of fewer than 256 products of three or four differences.
-  const auto exactly = [&]<std::size_t limbs>(WideInteger<limbs>) {
-    constexpr int most = (limbs * 64 - 1 - 8) / 4 - 2;
-    if (range.width > most) return std::optional<bool>();
-    const auto to_number = [&](double x) { return to_integer<WideInteger<limbs>>(x, range.lowest); };
-    return Parting<WideInteger<limbs>>(coordinates, to_number).part(a.moves, b.moves);
+  const auto exactly = [&]<class Integer>(Integer) {
+    const auto to_number = [&](double x) { return to_integer<Integer>(x, range.lowest); };
+    return *Parting<Integer>(coordinates, to_number).part(a.moves, b.moves);
   };
-  const std::optional<bool> quick = exactly(WideInteger<5>());
-  return quick ? *quick : exactly(WideInteger<12>()).value_or(false);
+  return range.width <= most(5) ? exactly(WideInteger<5>()) : exactly(WideInteger<12>());
 }
 
 }  // namespace supple
