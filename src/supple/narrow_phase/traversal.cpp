@@ -35,10 +35,13 @@ double largest_approach(const Aabb& way_a, const Aabb& way_b, bool any_parts) {
   return std::sqrt(square) * (1 + 0x1p-40);
 }
 
-/// Whether two children stay farther apart than the separation of the part of the step along an axis: on the
-/// same side at both ends. For any parts of the ways, the start counts, and what both move towards each other
-/// along the axis: elements whose distance is larger than `kept_share` times both ways keep enough of it, and
-/// the others need that much less `both ways` plus what they move along the axis.
+/// Whether two children stay farther apart along an axis than the separation of the part of the step: on the
+/// same side at both ends.
+///
+/// With `any_parts`, the boxes at the start count. The separation is s + W / (1 - keep), where W is the sum
+/// of both ways. Elements at a larger distance keep enough of it. The others keep at most s + keep W / (1 -
+/// keep), which is W less than the separation. So the gap must be that, plus what both move towards each
+/// other along the axis.
 bool stay_apart(const ObjectPairView& pair, const PartOfStep& part, std::uint32_t node_a, int child_a,
                 std::uint32_t node_b, int child_b) {
   const Aabb a0 = child_box(pair.a.moving.start[node_a], child_a),
