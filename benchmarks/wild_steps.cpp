@@ -87,11 +87,11 @@ int main(int count, char** arguments) {
     const TriangleMesh beam = make_box({4, 0.5, 0.5}, resolution);
     const std::vector<Body> beams{ways.body(beam, {}, 1), ways.body(at(beam, {0, 0.6, 0}), {}, 1)};
     const std::string name = "two beams, " + std::to_string(2 * beam.triangles.size()) + " triangles";
-    for (const double length : {1.0, 1e1, 1e2, 1e3, 1e6, 1e9})
+    for (const double length : {1e-3, 1e-2, 1.0, 1e1, 1e2, 1e3, 1e6, 1e9, 1e30})
       measure(name, beams, length, length <= longest);
   }
   const std::vector<Body> cloth{ways.body(make_cloth(32, 32), {}, 1)};
-  for (const double length : {1e-3, 1e-2, 1e-1, 1.0, 1e3, 1e9})
+  for (const double length : {1e-5, 1e-3, 1e-2, 1e-1, 1.0, 1e3, 1e9, 1e30})
     measure("exploding cloth, 2,048 triangles", cloth, length, length <= longest);
   std::vector<Body> deep;
   for (int i = 0; i < 4; ++i)
@@ -100,4 +100,10 @@ int main(int count, char** arguments) {
   for (const double length : {1e-2, 1e-1, 1.0, 1e3, 1e9})
     measure("four deep bodies, " + std::to_string(4 * deep[0].mesh.triangles.size()) + " triangles", deep,
             length, length <= longest / 1e4);
+  const TriangleMesh box = make_box({1, 1, 1}, 16);
+  for (const Vec3d& way : {Vec3d{0.25, 0, 0.5}, Vec3d{0.25, 0.125, 0}, Vec3d{0.25, 0, -0.5}}) {
+    const std::vector<Body> flush{ways.body(box, {}, 0), ways.body(at(box, {0, 0, 1}), way, 0)};
+    const std::string name = way.z > 0 ? "part" : way.z < 0 ? "press" : "slide";
+    for (const double length : {1e-3, 1.0}) measure("flush boxes that " + name, flush, length, true);
+  }
 }

@@ -65,8 +65,8 @@ struct ResponseBody {
 /// (`Scene::set_motion`) until other positions are set.
 ///
 /// Returns the part of the step, 0 to 1, in which nothing touches: 1 when the impulses removed all impacts,
-/// otherwise `Scene::max_step`. Bodies that move no further than this do not pass through anything. Elements
-/// that touch at the start make it 0.
+/// otherwise `Scene::max_step`. Bodies that move no further than this do not pass through anything. It is 0
+/// where surfaces that touch at the start would cross; surfaces that part or slide do not shorten it.
 ///
 /// Costs one search of proximity and usually one or two of continuous contacts, and memory in proportion
 /// to the bodies and their contacts. Throws `Error` when an option, `dt` > 0 or a mass is out of its range,

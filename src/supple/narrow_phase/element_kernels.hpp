@@ -67,8 +67,11 @@ class ElementPairBatches {
   void* context_ = nullptr;
 };
 
+/// The shortest part of a step in which moving boxes are searched.
+constexpr float least_part_of_step = 0x1p-120f;
+
 /// Parameters of the test of moving boxes: whether they come within `separation` of each other until the time
-/// `latest`, from 2^-100 to 1. The boxes of b are moved by `offset`; the separation covers the rounding
+/// `latest`, from that part to 1. The boxes of b are moved by `offset`; the separation covers the rounding
 /// errors of this.
 struct PartOfStep {
   float separation = 0;

@@ -13,14 +13,43 @@
 namespace supple {
 namespace {
 
-/// Whether two boxes at both ends of a part of a step are farther apart than the separation, on the same side
-/// at both ends.
+/// Bounds of the ways of the vertices of a child.
+Aabb way_of(const OctreeView& view, std::uint32_t node, int child) {
+  const Aabb at_rest{{0, 0, 0}, {0, 0, 0}};
+  const Aabb way = view.ways != nullptr ? child_box(view.ways[node], child) : at_rest;
+  return way.empty() ? at_rest : way;
+}
+
+/// A bound of the length of two vertices' largest approach; with `any_parts` of the sum of their ways.
+double largest_approach(const Aabb& way_a, const Aabb& way_b, bool any_parts) {
+  double square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto longest = [&](const Aabb& way) {
+      return std::max(std::fabs(double{way.min[axis]}), std::fabs(double{way.max[axis]}));
+    };
+    const double most = any_parts ? longest(way_a) + longest(way_b)
+                                  : std::max(std::fabs(double{way_a.max[axis]} - way_b.min[axis]),
+                                             std::fabs(double{way_a.min[axis]} - way_b.max[axis]));
+    square += most * most;
+  }
+  return std::sqrt(square) * (1 + 0x1p-40);
+}
+
+/// Whether two children stay farther apart along an axis than the separation of the part of the step: on the
+/// same side at both ends.
+///
+/// With `any_parts`, the boxes at the start count. The separation is s + W / (1 - keep), where W is the sum
+/// of both ways. Elements at a larger distance keep enough of it. The others keep at most s + keep W / (1 -
+/// keep), which is W less than the separation. So the gap must be that, plus what both move towards each
+/// other along the axis.
 bool stay_apart(const ObjectPairView& pair, const PartOfStep& part, std::uint32_t node_a, int child_a,
                 std::uint32_t node_b, int child_b) {
   const Aabb a0 = child_box(pair.a.moving.start[node_a], child_a),
              a1 = child_box(pair.a.moving.end[node_a], child_a),
              b0 = child_box(pair.b.moving.start[node_b], child_b),
              b1 = child_box(pair.b.moving.end[node_b], child_b);
+  const Aabb way_a = way_of(pair.a, node_a, child_a), way_b = way_of(pair.b, node_b, child_b);
+  const double both_ways = pair.any_parts ? largest_approach(way_a, way_b, true) : 0;
   const auto at_end = [&](float start, float end) {
     return (1 - double{part.latest}) * start + double{part.latest} * end;
   };
@@ -38,23 +67,39 @@ bool stay_apart(const ObjectPairView& pair, const PartOfStep& part, std::uint32_
                  above_end = at_end(b0.min[axis], b1.min[axis]) + offset - at_end(a0.max[axis], a1.max[axis]);
     const double below_start = a0.min[axis] - b0.max[axis] - offset,
                  below_end = at_end(a0.min[axis], a1.min[axis]) - at_end(b0.max[axis], b1.max[axis]) - offset;
-    if ((above_start > least && above_end > least) || (below_start > least && below_end > least)) return true;
+    if (pair.any_parts) {
+      const double to_above = std::max(way_a.max[axis], 0.0f) + std::max(-double{way_b.min[axis]}, 0.0),
+                   to_below = std::max(-double{way_a.min[axis]}, 0.0) + std::max(way_b.max[axis], 0.0f);
+      const auto least_to = [&](double towards) {
+        return least - (1 - 0x1p-20) * part.latest * std::max(both_ways * (1 - 0x1p-20) - towards, 0.0);
+      };
+      if (above_start > least_to(to_above) || below_start > least_to(to_below)) return true;
+    } else if ((above_start > least && above_end > least) || (below_start > least && below_end > least)) {
+      return true;
+    }
   }
   return false;
 }
 
 /// As `moving_overlap_masks`, with a separation of each pair of children.
 std::uint64_t masks_of_near_children(const ObjectPairView& pair, const NodePair& nodes) {
-  const std::uint32_t children_a = nodes.children_a & pair.a.nodes[nodes.a].child_mask(),
-                      children_b = nodes.children_b & pair.b.nodes[nodes.b].child_mask();
+  const OctreeNode &a = pair.a.nodes[nodes.a], &b = pair.b.nodes[nodes.b];
+  std::uint64_t near = ~std::uint64_t{0};
+  if (nodes.a != 0 && nodes.b != 0) {  // the separation of both nodes is enough for all of their children
+    const PartOfStep part = pair.part_of_step(a.parent, a.index_in_parent, b.parent, b.index_in_parent);
+    moving_overlap_masks({&nodes, 1}, pair.a.moving, pair.b.moving, part, &near);
+  }
+  const std::uint32_t children_a = nodes.children_a & a.child_mask(),
+                      children_b = nodes.children_b & b.child_mask();
   std::uint64_t mask = 0;
-  for (int i = 0; i < node_width; ++i) {
-    if ((children_a >> i & 1) == 0 || child_box(pair.a.moving.start[nodes.a], i).empty()) continue;
-    for (int j = 0; j < node_width; ++j) {
-      if ((children_b >> j & 1) == 0 || child_box(pair.b.moving.start[nodes.b], j).empty()) continue;
-      if (!stay_apart(pair, pair.part_of_step(nodes.a, i, nodes.b, j), nodes.a, i, nodes.b, j))
-        mask |= std::uint64_t{1} << (node_width * i + j);
-    }
+  for (; near != 0; near &= near - 1) {
+    const int place = std::countr_zero(near), i = place / node_width, j = place % node_width;
+    if ((children_a >> i & children_b >> j & 1) == 0) continue;
+    if (child_box(pair.a.moving.start[nodes.a], i).empty() ||
+        child_box(pair.b.moving.start[nodes.b], j).empty())
+      continue;
+    if (!stay_apart(pair, pair.part_of_step(nodes.a, i, nodes.b, j), nodes.a, i, nodes.b, j))
+      mask |= std::uint64_t{1} << place;
   }
   return mask;
 }
@@ -227,24 +272,10 @@ PartOfStep ObjectPairView::part_of_step(std::uint32_t node_a, int child_a, std::
                                         int child_b) const {
   PartOfStep part = part_of_step();
   if (kept_share == 0) return part;
-  const auto way_of = [](const OctreeView& view, std::uint32_t node, int child) {
-    const Aabb way = view.ways != nullptr ? child_box(view.ways[node], child) : Aabb{{0, 0, 0}, {0, 0, 0}};
-    return way.empty() ? Aabb{{0, 0, 0}, {0, 0, 0}} : way;
-  };
-  const Aabb way_a = way_of(a, node_a, child_a), way_b = way_of(b, node_b, child_b);
-  double square = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto longest = [&](const Aabb& way) {
-      return std::max(std::fabs(double{way.min[axis]}), std::fabs(double{way.max[axis]}));
-    };
-    const double most = any_parts ? longest(way_a) + longest(way_b)
-                                  : std::max(std::fabs(double{way_a.max[axis]} - way_b.min[axis]),
-                                             std::fabs(double{way_a.min[axis]} - way_b.max[axis]));
-    square += most * most;
-  }
+  const double approach = largest_approach(way_of(a, node_a, child_a), way_of(b, node_b, child_b), any_parts);
   // Beyond the range of float, boxes do not say how far elements are apart.
   constexpr double most = std::numeric_limits<float>::max() / 4;
-  const double grown = (part.separation + kept_share * part.latest * std::sqrt(square)) * (1 + 0x1p-20);
+  const double grown = (part.separation + kept_share * part.latest * approach) * (1 + 0x1p-20);
   part.separation = grown <= most ? round_up(grown) : std::numeric_limits<float>::infinity();
   return part;
 }

@@ -67,9 +67,9 @@ struct ObjectPairView {
 
   /// Bounds at a time before the end cost more than those at the end, and for a late time they save little.
   PartOfStep part_of_step() const {
-    constexpr float least = 0x1p-100f, most = 0.125f;
+    constexpr float most = 0.125f;
     const float latest_now = latest != nullptr ? latest->load(std::memory_order_relaxed) : 1;
-    const float until = latest_now < most ? std::max(latest_now, least) : 1;
+    const float until = latest_now < most ? std::max(latest_now, least_part_of_step) : 1;
     return {growth > 0 ? round_up(separation + growth * until) : separation, until, placement.offset, kinds,
             with_crossings ? placement.slop : -1};
   }
@@ -172,10 +172,18 @@ class Traversal {
       const std::size_t step = pair.latest != nullptr ? few : leaves.size();
       for (std::size_t i = 0; pair.kept_share == 0 && i < leaves.size(); i += step)
         find_pairs(leaves.subspan(i, std::min(step, leaves.size() - i)), pair.part_of_step());
+      if (pair.kept_share == 0) return;
+      PartOfStep part;  // a little larger than those of the leaves, so that many have the same boxes
+      part.separation = -1;
       for (const LeafPair& leaf_pair : leaves) {
-        if (pair.kept_share == 0) return;
-        element_boxes_->clear();  // they have the separation of the pair before
-        find_pairs({&leaf_pair, 1}, part_of_step(pair, leaf_pair));
+        const PartOfStep own = part_of_step(pair, leaf_pair);
+        if (own.latest != part.latest || !(own.separation <= part.separation) ||
+            own.separation < 0.5f * part.separation) {
+          part = own;
+          part.separation *= 1.125f;
+          element_boxes_->clear();
+        }
+        find_pairs({&leaf_pair, 1}, part);
       }
     });
     element_pairs_.flush();

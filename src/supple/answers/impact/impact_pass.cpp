@@ -121,6 +121,7 @@ void ImpactPass::start(const PassInput& input, std::span<const MovingObject> obj
                        const ImpactSearchOptions& options) {
   begin(input.jobs, objects, input.stop);
   options_ = options;
+  work_ = {};
   limit_.start(ContactLimit::unlimited, 0);
   latest_of_job_.assign(jobs_.size(), 0);
 }
@@ -140,6 +141,7 @@ const ImpactPass::Earliest* ImpactPass::search_earliest(Search search, float unt
 void ImpactPass::search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel) {
   search_ = search;
   run_tasks(jobs, parallel);
+  add_stats(workers_, 0, work_);
 }
 void ImpactPass::search_until(Search search, float until, const Parallel& parallel) {
   latest_[0] = until;
@@ -148,7 +150,7 @@ void ImpactPass::search_until(Search search, float until, const Parallel& parall
 
 ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
   ImpactOptions impact = options_.impact;
-  if (search_ == Search::touching || search_ == Search::rounded) return {.exact = impact.exact};
+  if (search_ == Search::touching) return {.exact = impact.exact};
   impact.min_separation = separation_of(impact.min_separation, objects_[jobs_[job].a].min_separation,
                                         objects_[jobs_[job].b].min_separation);
   return impact;
@@ -223,7 +225,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
 /// A vector kernel decides most pairs that touch; the scalar search decides the others.
 void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std::size_t count,
                                    Worker& worker) {
-  if (search_ == Search::safe_step || search_ == Search::free || search_ == Search::rounded) {
+  if (search_ == Search::safe_step || search_ == Search::free) {
     for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k)
       limit_step(job, kind, worker.open[k], worker);
     return;
@@ -247,7 +249,7 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
     worker.stats.exact_fallbacks += used_exact ? 1 : 0;
     if (!impact) continue;
     if (search_ >= Search::longest && impact->touching_at_start && impact->start_distance == 0) {
-      if (!touch_at_rest(pair.motion)) add_touching(job, kind, pair, worker);
+      if (search_ == Search::longest && !touch_at_rest(pair.motion)) add_near(job, kind, pair, true, worker);
       continue;
     }
     add_contact(job, kind, pair, *impact, worker);
@@ -285,9 +287,9 @@ void ImpactPass::add_contact(std::uint32_t job, ElementPairKind kind, const Open
 }
 
 void ImpactPass::keep_earlier(std::uint32_t job, const ContinuousContact& contact, Worker& worker) {
+  shorten_search(job, contact.toi);
   if (worker.earliest && !is_earlier(contact, job, worker.earliest->contact, worker.earliest->job)) return;
   worker.earliest = {contact, job};
-  shorten_search(job, contact.toi);
 }
 
 /// A reported time may be early by the tolerance. The pair with the earliest reported time may therefore

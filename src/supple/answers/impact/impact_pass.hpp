@@ -58,9 +58,11 @@ struct ImpactWorker : PassWorker<ContinuousContact> {
     double time = 1;
     LimitingPair pair;
   };
-  /// Elements that share a point at the start and do not move together.
-  struct TouchingPair {
+  /// Elements that are so near in the step that rounded positions could touch. Those that share a point at
+  /// the start do not move together.
+  struct NearPair {
     StepLimit limit;
+    bool touches = false;    ///< at the start
     bool is_turned = false;  ///< the first element of the motion is that of b
     std::array<std::uint32_t, 4> vertices;
     ElementMotion motion;
@@ -73,16 +75,14 @@ struct ImpactWorker : PassWorker<ContinuousContact> {
   FirstContacts first_contacts;
   std::size_t keep_first_at = 0;  // number of contacts of the present task
   std::optional<Earliest> earliest;
-  std::vector<StepLimit> limits;         // the first of the job of each task
-  std::vector<std::uint32_t> near_jobs;  // with elements so near that rounded positions could touch
-  std::vector<TouchingPair> touching;
+  std::vector<StepLimit> limits;  // the first of the job of each task
+  std::vector<NearPair> near;
   std::vector<Key> sorted;  // of the contacts of one job
 
   void start() {
     earliest.reset();
     limits.clear();
-    near_jobs.clear();
-    touching.clear();
+    near.clear();
   }
 };
 
@@ -113,6 +113,8 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   std::vector<ObjectStep> find_safe_steps(const PassInput& input, std::span<const MovingObject> objects,
                                           const ImpactSearchOptions& options, const StepOptions& step);
 
+  /// What the searches of the last call for a step or the earliest contact tested.
+  const StepStats& work() const { return work_; }
   std::span<const ContinuousContact> contacts() const {
     return lists_first() ? first_contacts_.contacts() : records_;
   }
@@ -127,12 +129,12 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   using OpenPair = ImpactWorker::OpenPair;
   using Earliest = ImpactWorker::Earliest;
   using StepLimit = ImpactWorker::StepLimit;
-  using TouchingPair = ImpactWorker::TouchingPair;
+  using NearPair = ImpactWorker::NearPair;
   /// `longest`: the earliest contact of elements that do not part. `touching`: the same without any
-  /// separation. `safe_step`: the parts of the step that keep distances. `free`: those that also keep them
-  /// when both objects move by other parts. `rounded`: contacts on the ways to the rounded positions at these
-  /// parts. From `longest` on, elements that touch at the start do not count.
-  enum class Search : std::uint8_t { all, earliest, longest, touching, safe_step, free, rounded };
+  /// separation. `safe_step`: the parts of the step that keep distances. `free`: pairs that may not keep them
+  /// when both objects move by any parts until the time. From `longest` on, elements that touch at the start
+  /// do not count.
+  enum class Search : std::uint8_t { all, earliest, longest, touching, safe_step, free };
 
   /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`, each until the time that `latest_`
   /// has for it.
@@ -170,24 +172,25 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   void start_steps(const PassInput& input, std::span<const MovingObject> objects,
                    const ImpactSearchOptions& options, const std::optional<StepOptions>& step);
   SafeStep find_step_until(double until, const FirstOfAll& first_of_all, const Parallel& parallel);
-  double first_part() const;
+  SafeStep first_in(SafeStep own, const FirstOfAll& first_of_all) const;
+  double part_of_small_ways() const;
   void list_limits();
-  void list_touching();
-  void add_touching(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, Worker& worker);
-  /// Adds the limits of the touching pairs of these jobs, which ascend: the start where they do not part, and
-  /// otherwise when they touch again. With `rounded`, `failing` is the limit of those that do not part or
-  /// touch again on the ways to the rounded positions.
-  void limit_touching(std::span<const std::uint32_t> jobs, bool rounded, double failing,
-                      const Parallel& parallel);
+  void add_near(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, bool touches, Worker& worker);
+  /// Adds what the last search found to `near_`, in canonical order, and returns the indices there.
+  std::vector<std::uint32_t> list_near();
+  /// Adds the limits of these pairs that touch at the start: the start where they do not part, and otherwise
+  /// when they touch again. With `failing`, the ways lead to the rounded positions at the steps of the
+  /// islands, all pairs count, and it is the limit of those that touch there.
+  void limit_near(std::span<const std::uint32_t> pairs, std::optional<double> failing,
+                  const Parallel& parallel);
   void search_islands(std::span<const std::uint32_t> jobs, const Parallel& parallel);
   void limit_islands();
-  bool join_islands();
   void shorten(std::uint32_t island, const StepLimit& limit);
-  void list_near_jobs();
-  void prove_rounded_positions(const Parallel& parallel);
+  void prove_rounded_positions(const FirstOfAll& first_of_all, const Parallel& parallel);
   bool moves(std::uint32_t object) const;
   std::uint32_t island_of(std::uint32_t object) const;
   std::uint32_t mover_of(std::uint32_t job) const;
+  double longest_step(std::uint32_t job) const;
   bool is_between_islands(std::uint32_t job) const;
   void add_contact(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, const Impact& impact,
                    Worker& worker);
@@ -209,14 +212,13 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   ImpactSearchOptions options_;
   std::optional<StepOptions> step_;      // nothing for the longest step
   ImpactSearchOptions last_options_;     // of the last `run`
+  StepStats work_;                       // of the searches besides `run`
   std::vector<std::uint32_t> all_jobs_;  // of `find_earliest`
-  // Safe steps: the first limit of each job, the free parts by job, and by object the islands as a forest.
-  // Each object points to one of its island with a smaller index, or to itself; then it has the island's
-  // step.
+  // Safe steps: the first limit of each job, and by object the islands as a forest. Each object points to one
+  // of its island with a smaller index, or to itself; then it has the island's step.
   std::vector<StepLimit> limits_, all_limits_;
-  std::vector<TouchingPair> touching_;
-  std::vector<std::uint32_t> near_jobs_;
-  std::vector<double> free_parts_;
+  std::vector<NearPair> near_;
+  bool is_wild_ = false;  ///< elements come nearer by more than their size
   std::vector<std::uint32_t> island_;
   std::vector<SafeStep> safe_;
   /// The search skips pairs that cannot touch before these times; and which of them is that of each job.

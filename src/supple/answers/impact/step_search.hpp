@@ -29,6 +29,8 @@ class StepSearch {
   /// Ascending by object. The span is valid until the next call.
   std::span<const ObjectStep> safe_steps(const ImpactSearchOptions& options, const StepOptions& step,
                                          const StepLimits& limits);
+  /// What the last call tested.
+  const StepStats& work() const { return pass_.work(); }
 
  private:
   void prepare(const Question& question);

@@ -53,6 +53,16 @@ VolumePolynomial::VolumePolynomial(const RelativeMotion& motion) {
   const Vec3d minors{u.y * w.z + u.z * w.y, u.z * w.x + u.x * w.z, u.x * w.y + u.y * w.x};
   in_range_ = largest_magnitude(larger(larger(m, u), w)) <= 0x1p100;
   error_ = 0x1p-47 * dot(m, minors) + 0x1p-960;
+  always_zero_ = true;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    always_zero_ = always_zero_ && (m[i] == 0 || ((u[j] == 0 || w[k] == 0) && (u[k] == 0 || w[j] == 0)));
+  }
+}
+
+bool VolumePolynomial::never_or_always_zero_after_start() const {
+  const auto& [c0, c1, c2, c3] = coefficients_;
+  return in_range_ && (always_zero_ || one_sign({c1, c1, c2, c3}, error_));
 }
 
 double VolumePolynomial::value(double t) const {

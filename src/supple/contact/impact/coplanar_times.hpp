@@ -19,6 +19,9 @@ class VolumePolynomial {
   double value(double t) const;
   /// Whether the volume is proven not to be 0 anywhere in [low, high].
   bool never_zero(double low, double high) const;
+  /// For elements that touch at the start: whether the volume is proven not to be 0 after it, or to be 0
+  /// always.
+  bool never_or_always_zero_after_start() const;
   /// Whether the values at both ends are proven to have different signs.
   bool changes_sign(double low, double high) const;
 
@@ -46,7 +49,7 @@ class VolumePolynomial {
 
   std::array<double, 4> coefficients_, powers_;
   double error_;
-  bool in_range_;
+  bool in_range_, always_zero_;
 };
 
 }  // namespace supple

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "contact/impact/coplanar_times.hpp"
 #include "contact/impact/root_search.hpp"
 #include "geometry/numbers/integer_points.hpp"
 
@@ -332,7 +333,8 @@ std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion) {
   return search_contact(motion, false);
 }
 std::optional<TimeBracket> exact_next_contact(const ElementMotion& motion) {
-  return search_contact(motion, true);
+  const VolumePolynomial volume(relative_motion(motion));
+  return volume.never_or_always_zero_after_start() ? std::nullopt : search_contact(motion, true);
 }
 
 }  // namespace supple

@@ -224,19 +224,6 @@ std::optional<Impact> impact_after(const ImpactSearch& search, const ElementMoti
   return impact_at(motion, relative, first->low, first->high == 0, separation);
 }
 
-/// A time up to which the elements stay farther apart than `separation`, early by no more than the
-/// tolerances; nothing when they do so within the whole step. Without `exact` it may be earlier, or there may
-/// be one when they stay apart.
-std::optional<double> first_time_within(const ElementMotion& motion, const RelativeMotion& relative,
-                                        double separation, bool exact, bool& used_exact) {
-  const ImpactSearch search = search_impact(relative, separation);
-  if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
-  if (search.outcome == ImpactSearch::Outcome::touching || !exact) return search.time;
-  used_exact = true;
-  const auto first = separation == 0 ? exact_first_contact(motion) : exact_first_contact(motion, separation);
-  return first ? std::optional(first->low) : std::nullopt;
-}
-
 /// Whether elements that are apart at the start, within the separation, part.
 bool part(const Impact& impact, const ElementMotion& motion, const RelativeMotion& relative,
           const ImpactOptions& options, bool& used_exact) {
@@ -247,6 +234,16 @@ bool part(const Impact& impact, const ElementMotion& motion, const RelativeMotio
 }
 
 }  // namespace
+
+std::optional<double> first_time_within(const ElementMotion& motion, const RelativeMotion& relative,
+                                        double separation, bool exact, bool& used_exact) {
+  const ImpactSearch search = search_impact(relative, separation);
+  if (search.outcome == ImpactSearch::Outcome::apart) return std::nullopt;
+  if (search.outcome == ImpactSearch::Outcome::touching || !exact) return search.time;
+  used_exact = true;
+  const auto first = separation == 0 ? exact_first_contact(motion) : exact_first_contact(motion, separation);
+  return first ? std::optional(first->low) : std::nullopt;
+}
 
 float end_of_search(const ImpactOptions& options) {
   return std::min(1.0f, round_up(options.max_time + toi_tolerance));

@@ -23,6 +23,12 @@ ElementPoints element_points(const std::array<Vec3d, 4>& points, bool are_edges)
 /// Whether the elements are within `separation` at the start, exactly.
 bool are_within(const ElementMotion& motion, double separation);
 
+/// A time up to which the elements stay farther apart than `separation`, early by no more than the
+/// tolerances; nothing when they do so within the whole step. Without `exact` it may be earlier, or there may
+/// be one when they stay apart.
+std::optional<double> first_time_within(const ElementMotion& motion, const RelativeMotion& relative,
+                                        double separation, bool exact, bool& used_exact);
+
 /// `first_impact` for finite coordinates and valid options, after the search of `relative`, the relative
 /// motion of the elements. Sets `used_exact` when floating point could not decide.
 std::optional<Impact> first_impact_after(const ImpactSearch& search, const ElementMotion& motion,

@@ -103,31 +103,38 @@ bool have_same_way(const Vec3d& start, const Vec3d& end, const Vec3d& start_of_o
   return true;
 }
 
-}  // namespace
-
-double largest_approach(const ElementMotion& motion) {
+/// The most by which points of the elements come nearer along a direction from the second to the first, where
+/// each element moves by at least `least` towards the other.
+double approach_along(const Vec3d& direction, const ElementMotion& motion, double least) {
   const std::array<Vec3d, 4> ways = ways_of(motion);
-  double largest = 0;
-  const std::size_t count = motion.are_edges ? 2 : 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = count; k < 4; ++k) largest = std::max(largest, scaled_norm(ways[i] - ways[k]));
+  double most_a = least, most_b = least;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool is_of_a = i < (motion.are_edges ? 2u : 1u);
+    double& most = is_of_a ? most_a : most_b;
+    most = std::max(most, dot(is_of_a ? -1.0 * ways[i] : ways[i], direction));
   }
-  return largest * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways);
+  return std::max(most_a + most_b, 0.0) * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways);
 }
 
+}  // namespace
+
+/// Along the direction between the closest points at the start, they come nearer by at most `approach`.
 SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double latest, bool exact) {
   const ScaledMotion scaled(motion, kept);
   const RelativeMotion relative = relative_motion(scaled.motion);
   const DistanceBounds start = distance_bounds(relative, 0);
-  if (start.low == 0 && are_within(motion, 0)) {
+  ElementMotion at_start = motion;
+  at_start.end = at_start.start;
+  if (start.low == 0 && exact_first_contact(at_start)) {
     constexpr double any = std::numeric_limits<double>::infinity();
     return {{}, any, false, !touch_at_rest(motion)};
   }
   const bool beyond = is_beyond(start, scaled, motion, kept);
   const KeptBounds least = kept_bounds(start, scaled.kept, beyond);
-  const double approach = largest_approach(scaled.motion);
-  SafeTime result{{}, std::max(least.low, start.low - approach) / scaled.factor, false, false};
-  if (approach < least_room(start, scaled.kept, beyond)) return result;
+  constexpr double any_way = -std::numeric_limits<double>::max() / 4;
+  const double approach = approach_along(start.direction, scaled.motion, any_way);
+  SafeTime result{{}, std::max(least.low, start.low - latest * approach) / scaled.factor, false, false};
+  if (start.low - approach > least.high) return result;
   const ImpactSearch search = search_impact(relative, least.high);
   if (search.outcome == ImpactSearch::Outcome::apart) return result;
   result.time = search.time;
@@ -143,21 +150,21 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
 double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding, double growth) {
   const ScaledMotion scaled(motion, kept);
   const DistanceBounds start = distance_bounds(relative_motion(scaled.motion), 0);
-  const std::array<Vec3d, 4> ways = ways_of(scaled.motion);
-  double most_a = 0, most_b = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const bool is_of_a = i < (motion.are_edges ? 2u : 1u);
-    double& most = is_of_a ? most_a : most_b;
-    most = std::max(most, dot(is_of_a ? -1.0 * ways[i] : ways[i], start.direction));
-  }
-  const double approach =
-      (most_a + most_b) * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways) + 2 * growth * scaled.factor;
+  const double approach = approach_along(start.direction, scaled.motion, 0) + 2 * growth * scaled.factor;
   const double room =
       least_room(start, scaled.kept, is_beyond(start, scaled, motion, kept)) - 2 * rounding * scaled.factor;
   return approach > 0 ? std::clamp(room / approach * (1 - 0x1p-40), 0.0, 1.0) : 1;
 }
 
 bool touch_at_rest(const ElementMotion& motion) {
+  const auto moves_with = [&](std::size_t i, std::size_t k) {
+    return have_same_way(motion.start[i], motion.end[i], motion.start[k], motion.end[k]);
+  };
+  std::size_t same = 0;
+  for (std::size_t i = 0, count = motion.are_edges ? 2 : 1; i < count; ++i) {
+    for (std::size_t k = count; k < 4; ++k) same += moves_with(i, k) ? 1 : 0;
+  }
+  if (same == 0 || same == (motion.are_edges ? 4u : 3u)) return same != 0;
   bool used_exact = false;
   const auto touching =
       closest_features_within(element_points(motion.start, motion.are_edges), 0, used_exact);
@@ -165,9 +172,6 @@ bool touch_at_rest(const ElementMotion& motion) {
   const bool are_vertices = touching->kind == ClosestFeatures::Kind::vertices;
   const std::array<std::size_t, 3> vertices{touching->vertex, touching->edge[0],
                                             are_vertices ? touching->vertex : touching->edge[1]};
-  const auto moves_with = [&](std::size_t i, std::size_t k) {
-    return have_same_way(motion.start[i], motion.end[i], motion.start[k], motion.end[k]);
-  };
   if (touching->kind == ClosestFeatures::Kind::interiors)
     return moves_with(1, 0) && moves_with(2, 0) && moves_with(3, 0);
   return moves_with(vertices[1], vertices[0]) && moves_with(vertices[2], vertices[0]);

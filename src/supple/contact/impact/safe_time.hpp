@@ -15,7 +15,7 @@ struct SafeTime {
   /// Never later than the first time at which the elements are at the distance that they keep, and earlier by
   /// at most 2^-18 of it; nothing when they are farther apart in the whole step.
   std::optional<double> time;
-  /// A lower bound of their distance up to `time`, or in the whole step.
+  /// A lower bound of their distance up to `latest`, or up to `time` when that is earlier.
   double least_distance = 0;
   bool used_exact = false;
   /// The elements touch at the start and do not move together. The start is no time that limits the step:
@@ -30,9 +30,6 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
 /// A part, 0 to 1, up to which two elements surely keep their distance when they move by any two parts of
 /// their ways. They then also stay farther apart than `rounding` plus the part times `growth`.
 double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding, double growth);
-
-/// A bound of the most by which two vertices of a pair come nearer.
-double largest_approach(const ElementMotion& motion);
 
 /// Whether elements that touch at the start do not move against each other: the vertices of the features that
 /// touch, as `ElementDistance` names them, move by exactly the same way.
