@@ -28,12 +28,11 @@ struct ManifoldPoint {
 
 /// A patch of contacts of two objects, or of one object with itself, reduced to what a rigid body needs: one
 /// normal, one depth, and at most four points that span it. With penetration, each `IntersectionCurve` is a
-/// patch. Two objects without a curve have the patches of their proximity pairs: a patch grows from the
-/// nearest pair that is in no patch yet over all pairs in no patch that are linked and whose normals are
-/// within 45 degrees of its normal. Two pairs are linked when they have vertices in common, or vertices of
-/// one triangle, on either object. A patch also replaces linked pairs whose elements are as far apart along
-/// its normal as the nearest pair: for example an edge of a floor and an edge of the side of a box that
-/// stands on it.
+/// patch. Two objects without a curve have the patches of their proximity pairs: a patch has the nearest pair
+/// that is in no patch yet, and all pairs in no patch whose normals are within 45 degrees of its normal. It
+/// does not depend on how the surfaces are divided into triangles. A patch of two objects also replaces pairs
+/// whose elements are as far apart along its normal as the nearest pair: for example an edge of a floor and
+/// an edge of the side of a box that stands on it.
 ///
 /// Where objects touch, or are as near as coordinates are rounded (2^-40 of their size), the points of a pair
 /// give no direction. The surfaces around the points do: the direction in which a plane lies between both,
@@ -46,17 +45,17 @@ struct ManifoldPoint {
 /// and a patch has none when the way between the points of its nearest pair starts inside a solid. So no
 /// manifold moves a body deeper. Request penetration, too, where objects may overlap.
 ///
-/// The points are the deepest one, and those that are farthest from it, from the line, and outside the
-/// triangle of those before. Of several deepest ones (within 2^-40), the first is the farthest from the
-/// middle of the patch. Points nearer than 2^-10 of the size of the patch to what is spanned already are left
-/// out, so an edge has two points and a vertex has one. They run counter-clockwise, seen from a.
+/// The points are the deepest one, the one farthest from it, and those that add most area. Of several deepest
+/// ones (within 2^-40), the first is a corner of the patch. Of points that add as much, the deepest is taken.
+/// Points that add less than 2^-10 of the distance of the first two are left out, so an edge has two points
+/// and a vertex has one. They run counter-clockwise, seen from a.
 ///
 /// A manifold keeps its id while it stays. Of all manifolds of two objects in two steps that follow each
-/// other, those with most features in common are the same (a feature is a vertex, edge or triangle of one
-/// object), then those whose points are nearest to each other, then the first ones. So the only manifold of
-/// two objects stays as long as they have one; when a patch splits, one part stays and the others begin; when
-/// patches merge, one stays and the others end. The points of a manifold that stays are matched in the same
-/// way. A step without manifolds ends all.
+/// other, those with most features in common are the same, then those whose points are nearest to each other.
+/// (A feature is a vertex, edge or triangle of one object.) So the only manifold of two objects stays as long
+/// as they have one; when a patch splits, one part stays and the others begin; when patches merge, one stays
+/// and the others end. The points of a manifold that stays are matched in the same way. A step without
+/// manifolds ends all.
 struct Manifold {
   ObjectId a, b;         ///< equal for a patch of an object with itself
   std::uint64_t id = 0;  ///< of no other manifold of the scene

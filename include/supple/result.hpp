@@ -144,9 +144,10 @@ struct DetectResult {
   std::span<const std::uint32_t> curve_contacts;  ///< indices into `contacts`
   std::span<const Vec3d> curve_points;
   std::span<const std::uint32_t> enclosed_vertices;
-  std::span<const Manifold> manifolds;  ///< ordered by object a, object b, first contact or nearest pair
+  /// Ordered by object a, object b, then curves by their first contact, and pairs by their smallest distance.
+  std::span<const Manifold> manifolds;
   std::span<const ManifoldPoint> manifold_points;
-  std::span<const EndedManifold> ended_manifolds;  ///< those of the last step that are gone, by id
+  std::span<const EndedManifold> ended_manifolds;  ///< those of the last step that are gone, in its order
   std::span<const CollidingVertices> colliding_vertex_groups;
   std::span<const std::uint32_t> colliding_vertices;
   std::span<const NonFiniteVertex> non_finite_vertices;
@@ -264,7 +265,9 @@ struct PenetrationDifference {
 /// Result of `Scene::verify`: exact brute force over every triangle pair of the scene for intersections, and
 /// over every vertex-face and edge-edge pair for continuous contacts and for proximity, and over every vertex
 /// and triangle for penetrations and contained parts. Curves follow from the intersections; their normals and
-/// depths must lead vertices inside a solid out of it.
+/// depths must lead vertices inside a solid out of it. Manifolds must have the normal and the depth of their
+/// curve or nearest pair, and points of it with their depths, among them the deepest; where not, the
+/// difference names the smallest contact of the curve, or the nearest pair.
 struct VerifyReport {
   std::uint64_t triangle_pairs_checked = 0;
   std::uint64_t intersecting_pairs = 0;

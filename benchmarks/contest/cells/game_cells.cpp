@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contest/cells/cells.hpp"
@@ -58,6 +59,7 @@ class Pile {
 struct OwnPoint {
   Vec3d position;
   double depth = 0;
+  std::uint64_t id = 0;
 };
 struct OwnManifold {
   ObjectId a, b;
@@ -111,6 +113,30 @@ void find_own_manifolds(const DetectResult& result, std::vector<OwnPoint>& point
   }
 }
 
+/// Gives each point the id of the nearest one of the last frame that is within 0.1 and has no successor yet.
+/// Both lists are in the order of objects.
+void match(std::vector<OwnManifold>& last, std::vector<OwnManifold>& manifolds, std::uint64_t& last_id) {
+  const auto objects = [](const OwnManifold& m) { return std::pair(m.a, m.b); };
+  auto old = last.begin();
+  for (OwnManifold& manifold : manifolds) {
+    while (old != last.end() && objects(*old) < objects(manifold)) ++old;
+    const bool is_old = old != last.end() && objects(*old) == objects(manifold);
+    const std::size_t old_count = is_old ? old->count : 0;
+    for (OwnPoint& point : std::span(manifold.points).first(manifold.count)) {
+      OwnPoint* nearest = nullptr;
+      double least = 0.01;
+      for (std::size_t i = 0; i < old_count; ++i) {
+        const double distance = squared_norm(old->points[i].position - point.position);
+        if (distance >= least || old->points[i].id == 0) continue;
+        least = distance;
+        nearest = &old->points[i];
+      }
+      point.id = nearest != nullptr ? std::exchange(nearest->id, 0) : ++last_id;
+    }
+    if (is_old) ++old;
+  }
+}
+
 }  // namespace
 
 void run_game(const Choice& choice, const std::string& kinds, Output& output) {
@@ -122,19 +148,23 @@ void run_game(const Choice& choice, const std::string& kinds, Output& output) {
   options.threads = 1;
   options.contacts = *contacts;
   Pile pile(options, *contacts == ContactKinds::penetration ? 0.99 : 1.03);
-  DetectRequest with_manifolds;
+  DetectRequest plain, with_manifolds;
+  plain.curves = *contacts == ContactKinds::penetration;  // the loop reads them
   with_manifolds.manifolds = true;
   std::vector<double> plain_times, with_times, manifold_times, own_times;
   std::vector<OwnPoint> points;
-  std::vector<OwnManifold> own;
+  std::vector<OwnManifold> own, last_own;
+  std::uint64_t last_id = 0;
   double manifolds = 0;
   for (std::size_t round = 0; round < choice.rounds; ++round) {
     pile.advance();
     double start = wall_milliseconds();
-    pile.scene.detect();
+    pile.scene.detect(plain);
     plain_times.push_back(wall_milliseconds() - start);
     start = wall_milliseconds();
+    std::swap(own, last_own);
     find_own_manifolds(pile.scene.result(), points, own);
+    match(last_own, own, last_id);
     own_times.push_back(wall_milliseconds() - start);
     // Two steps in a row, so that the manifolds of the second one stay.
     pile.scene.detect(with_manifolds);

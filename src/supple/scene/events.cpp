@@ -15,7 +15,7 @@ void Events::prepare(World& world, const Question& question, DetectResult& found
   list_pairs_of_groups(found);
   if (question.manifolds) {
     Timer timer;
-    find_manifolds(world, found);
+    find_manifolds(world, question.impact.kinds, found);
     found.stats.manifold_seconds = timer.lap();
   } else {
     manifold_pass_.find_none();
@@ -48,7 +48,7 @@ void Events::release(ObjectId id) {
   for (PairCache* const pairs : all_) pairs->release(id);
 }
 
-void Events::find_manifolds(World& world, const DetectResult& found) {
+void Events::find_manifolds(World& world, ElementKinds kinds, const DetectResult& found) {
   manifold_objects_.clear();
   for (std::uint32_t slot = 0; slot < world.slot_count(); ++slot) {
     manifold_objects_.emplace_back();
@@ -57,13 +57,11 @@ void Events::find_manifolds(World& world, const DetectResult& found) {
     manifold_objects_.back() = {
         {&object.octree(), nullptr, &object.placement().end(), object.placement().translation(),
          object.placement().is_mirrored(), object.inward_triangles()},
-        &object};
+        &object,
+        object.box(),
+        object.options.solid};
   }
-  for (const ContactGroup& group : found.proximity_groups) {
-    for (const ObjectId id : {group.a, group.b})
-      manifold_objects_[id.index].surface.around = &world[id.index].vertex_triangles();
-  }
-  manifold_pass_.find(found, manifold_objects_);
+  manifold_pass_.find(found, manifold_objects_, kinds == ElementKinds::all && !found.truncated);
 }
 
 /// Pairs of objects one of which has a vertex or a part inside the other, each once, ascending.

@@ -34,7 +34,7 @@ class Events {
   void release(ObjectId id);
 
  private:
-  void find_manifolds(World& world, const DetectResult& found);
+  void find_manifolds(World& world, ElementKinds kinds, const DetectResult& found);
   void list_touching_pairs(const DetectResult& found);
   void list_deep_pairs(const DetectResult& found);
   void list_pairs_of_groups(const DetectResult& found);

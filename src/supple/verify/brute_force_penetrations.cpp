@@ -228,4 +228,65 @@ void verify_curves(const ObjectPair& pair, const std::array<CurveSideTruth, 2>& 
   }
 }
 
+void verify_manifolds(const ObjectPair& pair, const std::array<const PlainObject*, 2>& objects,
+                      const DetectResult& result, VerifyReport& report) {
+  const auto objects_of = [](const auto& record) { return ObjectPair{record.a, record.b}; };
+  for (const Manifold& manifold : std::ranges::equal_range(result.manifolds, pair, {}, objects_of)) {
+    std::vector<std::pair<double, Vec3d>> known;  // depths and points
+    const bool is_curve = manifold.source == ManifoldSource::curve;
+    Vec3d normal = manifold.normal;
+    double depth = 0, deepest = 0, size = 0;
+    if (is_curve) {
+      const IntersectionCurve& curve = result.curves[manifold.record];
+      normal = curve.normal;
+      depth = curve.depth;
+      for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
+        for (const std::uint32_t v : result.enclosed_vertices_of(curve, side)) {
+          const Vec3d at = objects[side == ContactSide::a ? 0 : 1]->positions[v];
+          const double height = dot(at - curve.centroid, side == ContactSide::a ? -normal : normal);
+          if (height > 0) known.emplace_back(std::min(height, depth), at);
+        }
+      }
+      deepest = depth;
+      if (!known.empty())
+        deepest = std::ranges::max_element(known, {}, [](const auto& k) { return k.first; })->first;
+      const double of_curve = known.empty() ? depth : 0;
+      for (const std::uint32_t i : result.contacts_of(curve)) {
+        for (const ContactPoint& point : result.points_of(result.contacts[i]))
+          known.emplace_back(of_curve, point.position);
+      }
+    } else {
+      for (const ContactGroup& group :
+           std::ranges::equal_range(result.proximity_groups, pair, {}, objects_of)) {
+        for (const ProximityPair& p : result.proximity_pairs_of(group)) {
+          known.emplace_back(0 - p.distance, 0.5 * p.point_a + 0.5 * p.point_b);
+          size = std::max(size, largest_magnitude(p.point_a));
+        }
+      }
+      deepest = depth = 0 - result.proximity_pairs[manifold.record].distance;
+      if (-depth > 0x1p-40 * size) normal = result.proximity_pairs[manifold.record].normal;
+    }
+    const auto points = result.points_of(manifold);
+    double most = points.front().depth;
+    bool is_right = points.size() <= 4 && manifold.depth == depth &&
+                    norm(manifold.normal - normal) < 0x1p-40 &&
+                    (normal == Vec3d{} || std::fabs(norm(normal) - 1) < 0x1p-40);
+    for (const ManifoldPoint& point : points) {
+      most = std::max(most, point.depth);
+      size = std::max(size, largest_magnitude(point.position));
+      is_right = is_right && std::ranges::find(known, std::pair(point.depth, point.position)) != known.end();
+    }
+    if (is_right && std::fabs(most - deepest) <= 0x1p-38 * size) continue;
+    if (is_curve) {
+      const Contact& first = result.contacts[result.contacts_of(result.curves[manifold.record]).front()];
+      report.penetration_differences.push_back({pair.a, pair.b, objects[0]->triangles[first.triangle_a][0],
+                                                PenetrationDifference::Fault::inexact});
+    } else {
+      const ProximityPair& p = result.proximity_pairs[manifold.record];
+      report.proximity_differences.push_back({pair.a, pair.b, p.kind_a, p.kind_b, p.element_a, p.element_b,
+                                              ProximityDifference::Fault::inexact});
+    }
+  }
+}
+
 }  // namespace supple

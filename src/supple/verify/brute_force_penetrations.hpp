@@ -58,4 +58,12 @@ struct CurveSideTruth {
 void verify_curves(const ObjectPair& pair, const std::array<CurveSideTruth, 2>& sides,
                    const DetectResult& result, std::vector<PenetrationDifference>& differences);
 
+/// Checks the manifolds of two objects by what follows from their definition, and appends a difference for
+/// each that fails: at its curve, or at its nearest pair. The normal and the depth are those of the record
+/// (or where surfaces touch, of length 1), each of the one to four points is a point of the contact with its
+/// depth, and the deepest one is as deep as the contact. `verify_curves` checks that the way along the normal
+/// leads out.
+void verify_manifolds(const ObjectPair& pair, const std::array<const PlainObject*, 2>& objects,
+                      const DetectResult& result, VerifyReport& report);
+
 }  // namespace supple

@@ -161,6 +161,10 @@ VerifyReport Verification::run(const CallLimits& limits, const PairShare& share)
     if (question_.is_continuous()) verify_impacts(pair, of_impacts, report);
     if (question_.has_proximity()) verify_proximity(pair, of_proximity, report);
     if (question_.has_penetration()) verify_penetrations(pair, touching, report);
+    if (!result_.manifolds.empty()) {
+      const PlainObject a = plain_object(world_[pair.a.index]), b = plain_object(world_[pair.b.index]);
+      supple::verify_manifolds(pair, {&a, &b}, result_, report);
+    }
   }
   return report;
 }

@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <limits>
-#include <tuple>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "answers/manifold/manifold_pass.hpp"
-#include "core/sort_once.hpp"
 
 namespace supple {
 namespace {
@@ -16,196 +15,153 @@ Vec3d center_of(const ManifoldLists& lists, const Manifold& manifold) {
   return mean;
 }
 
+/// Gives a manifold the id of an old one, and its points those of the old points: first where both features
+/// agree, then where one does, then the nearest.
+void take_ids(const ManifoldLists& before, const Manifold& old, ManifoldLists& now, Manifold& manifold) {
+  manifold.id = old.id;
+  manifold.lasting = Lasting::stay;
+  const std::span was = std::span(before.points).subspan(old.first_point, old.point_count);
+  const std::span is = std::span(now.points).subspan(manifold.first_point, manifold.point_count);
+  const auto* const old_names = before.names.data() + old.first_point;
+  const auto* const names = now.names.data() + manifold.first_point;
+  std::array<bool, 4> is_taken{};
+  std::size_t left = std::min(was.size(), is.size());
+  const auto for_each_pair = [&](const auto& visit) {
+    for (std::size_t q = 0; q < is.size(); ++q) {
+      for (std::size_t p = 0; p < was.size() && is[q].lasting == Lasting::begin; ++p) {
+        if (!is_taken[p]) visit(p, q);
+      }
+    }
+  };
+  const auto take = [&](std::size_t p, std::size_t q) {
+    is_taken[p] = true;
+    is[q].id = was[p].id;
+    is[q].lasting = Lasting::stay;
+    --left;
+  };
+  for_each_pair([&](std::size_t p, std::size_t q) {
+    if (old_names[p] == names[q]) take(p, q);
+  });
+  while (left > 0) {
+    int fewest = 3;
+    double nearest = 0;
+    std::size_t best_p = 0, best_q = 0;
+    for_each_pair([&](std::size_t p, std::size_t q) {
+      const int different =
+          (old_names[p][0] != names[q][0] ? 1 : 0) + (old_names[p][1] != names[q][1] ? 1 : 0);
+      const double distance = squared_norm(is[q].position - was[p].position);
+      if (different > fewest || (different == fewest && !(distance < nearest))) return;
+      fewest = different;
+      nearest = distance;
+      best_p = p;
+      best_q = q;
+    });
+    take(best_p, best_q);
+  }
+}
+
 }  // namespace
 
 void ManifoldMatcher::match(const ManifoldLists& before, ManifoldLists& now, std::uint64_t& last_id,
                             std::vector<EndedManifold>& ended) {
-  old_of_.assign(now.manifolds.size(), none);
-  new_of_.assign(before.manifolds.size(), none);
-  match_single(before, now);
-  match_by_names(before, now);
-  match_by_places(before, now);
-  for (std::size_t i = 0; i < now.manifolds.size(); ++i) {
-    Manifold& manifold = now.manifolds[i];
-    manifold.lasting = Lasting::begin;
-    if (old_of_[i] != none) {
-      const Manifold& old = before.manifolds[old_of_[i]];
-      manifold.id = old.id;
-      manifold.lasting = Lasting::stay;
-      match_points(before, old, now, manifold);
-    } else {
-      manifold.id = ++last_id;
-    }
-    for (std::uint32_t p = 0; p < manifold.point_count; ++p) {
-      ManifoldPoint& point = now.points[manifold.first_point + p];
-      if (point.lasting == Lasting::begin) point.id = ++last_id;
-    }
-  }
   ended.clear();
-  for (std::size_t i = 0; i < before.manifolds.size(); ++i) {
-    const Manifold& old = before.manifolds[i];
-    if (new_of_[i] == none) ended.push_back({old.a, old.b, old.id});
-  }
-  std::sort(ended.begin(), ended.end(),
-            [](const EndedManifold& p, const EndedManifold& q) { return p.id < q.id; });
-}
-
-/// Matches the only manifold of two objects with their only one of the step before. Both lists are in the
-/// order of objects.
-void ManifoldMatcher::match_single(const ManifoldLists& before, const ManifoldLists& now) {
-  const auto objects = [](const Manifold& manifold) { return std::tie(manifold.a, manifold.b); };
-  const auto is_single = [&](const std::vector<Manifold>& list, std::size_t i) {
-    return (i == 0 || objects(list[i - 1]) != objects(list[i])) &&
-           (i + 1 == list.size() || objects(list[i + 1]) != objects(list[i]));
+  // Both lists are in the order of objects.
+  Range old, found;
+  const auto objects = [](const Manifold& m) { return std::pair(m.a, m.b); };
+  const auto find_end = [&](const std::vector<Manifold>& list, Range& range) {
+    range.end = range.begin;
+    while (range.end < list.size() && objects(list[range.end]) == objects(list[range.begin])) ++range.end;
   };
-  std::uint32_t old = 0;
-  for (std::uint32_t i = 0; i < now.manifolds.size(); ++i) {
-    while (old < before.manifolds.size() && objects(before.manifolds[old]) < objects(now.manifolds[i])) ++old;
-    if (old == before.manifolds.size()) return;
-    if (objects(before.manifolds[old]) != objects(now.manifolds[i]) || !is_single(before.manifolds, old) ||
-        !is_single(now.manifolds, i))
-      continue;
-    new_of_[old] = i;
-    old_of_[i] = old;
+  const auto end = [&](const Manifold& manifold) { ended.push_back({manifold.a, manifold.b, manifold.id}); };
+  while (found.begin < now.manifolds.size()) {
+    find_end(now.manifolds, found);
+    const auto of_found = objects(now.manifolds[found.begin]);
+    while (old.begin < before.manifolds.size() && objects(before.manifolds[old.begin]) < of_found)
+      end(before.manifolds[old.begin++]);
+    find_end(before.manifolds, old);
+    if (old.begin < old.end && objects(before.manifolds[old.begin]) != of_found) old.end = old.begin;
+    old_of_.assign(found.end - found.begin, 0);
+    new_of_.assign(old.end - old.begin, 0);
+    if (old_of_.size() != 1 || new_of_.size() != 1) match_several(before, old, now, found);
+    for (std::uint32_t i = found.begin; i < found.end; ++i) {
+      Manifold& manifold = now.manifolds[i];
+      const std::uint32_t of_old = old_of_[i - found.begin];
+      if (of_old != none)
+        take_ids(before, before.manifolds[old.begin + of_old], now, manifold);
+      else
+        manifold.id = ++last_id;
+      for (ManifoldPoint& point : std::span(now.points).subspan(manifold.first_point, manifold.point_count)) {
+        if (point.lasting == Lasting::begin) point.id = ++last_id;
+      }
+    }
+    for (std::uint32_t i = old.begin; i < old.end; ++i) {
+      if (new_of_[i - old.begin] == none) end(before.manifolds[i]);
+    }
+    found.begin = found.end;
+    old.begin = old.end;
   }
+  while (old.begin < before.manifolds.size()) end(before.manifolds[old.begin++]);
 }
 
-/// Matches other manifolds with features in common, first those with most of them. A feature of many
-/// manifolds says little, and is left out, so that the work stays linear.
-void ManifoldMatcher::match_by_names(const ManifoldLists& before, const ManifoldLists& now) {
-  constexpr std::ptrdiff_t most_manifolds = 16;
-  const auto for_each_key = [](const ManifoldLists& lists, std::uint32_t i, const auto& visit) {
+/// Matches those with most features in common first, then the nearest ones. A manifold is compared with few
+/// of those that have a feature or nothing in common with it, so that the work stays linear.
+void ManifoldMatcher::match_several(const ManifoldLists& before, const Range& old, const ManifoldLists& now,
+                                    const Range& found) {
+  constexpr std::uint32_t most_of_a_name = 16, most_without_one = 64;
+  const bool is_one_object = now.manifolds[found.begin].a == now.manifolds[found.begin].b;
+  const auto for_each_name = [&](const ManifoldLists& lists, std::uint32_t i, const auto& visit) {
     const Manifold& manifold = lists.manifolds[i];
     for (std::uint32_t p = 0; p < manifold.point_count; ++p) {
-      const ManifoldLists::PointName& name = lists.names[manifold.first_point + p];
-      for (std::uint32_t side = 0; side < 2; ++side) {
-        // Within one object, the sides may be exchanged.
-        if (name.has_name[side])
-          visit(Key{manifold.a, manifold.b, manifold.a == manifold.b ? 0 : side, name.names[side]});
-      }
+      const ManifoldLists::PointName& names = lists.names[manifold.first_point + p];
+      // Within one object, the sides may be exchanged.
+      if (names[0] != ManifoldLists::no_name) visit(0u, names[0]);
+      if (names[1] != ManifoldLists::no_name) visit(is_one_object ? 0u : 1u, names[1]);
     }
   };
+  std::ranges::fill(old_of_, none);
+  std::ranges::fill(new_of_, none);
+  if (new_of_.empty()) return;
   named_.clear();
-  for (std::uint32_t i = 0; i < before.manifolds.size(); ++i) {
-    if (new_of_[i] == none) for_each_key(before, i, [&](const Key& key) { named_.push_back({key, i}); });
-  }
-  sort_once(named_);
-  common_.clear();
-  for (std::uint32_t i = 0; i < now.manifolds.size(); ++i) {
-    if (old_of_[i] != none) continue;
-    for_each_key(now, i, [&](const Key& key) {
-      const auto first =
-          std::lower_bound(named_.begin(), named_.end(), key,
-                           [](const NamedManifold& named, const Key& k) { return named.key < k; });
-      const auto last = std::upper_bound(
-          first, named_.end(), key, [](const Key& k, const NamedManifold& named) { return k < named.key; });
-      if (last - first > most_manifolds) return;
-      for (auto named = first; named != last; ++named) common_.push_back({named->manifold, i, 1});
+  for (std::uint32_t i = old.begin; i < old.end; ++i) {
+    for_each_name(before, i, [&](std::uint32_t side, std::uint64_t name) {
+      named_.push_back({name, side, i});
     });
   }
-  std::sort(common_.begin(), common_.end());
-  std::size_t count = 0;
-  for (const Common& one : common_) {
-    if (count > 0 && common_[count - 1].before == one.before && common_[count - 1].now == one.now)
-      ++common_[count - 1].count;
-    else
-      common_[count++] = one;
-  }
-  common_.resize(count);
-  std::sort(common_.begin(), common_.end(), [](const Common& p, const Common& q) {
-    return std::tuple(q.count, p.before, p.now) < std::tuple(p.count, q.before, q.now);
-  });
-  for (const Common& one : common_) {
-    if (new_of_[one.before] != none || old_of_[one.now] != none) continue;
-    new_of_[one.before] = one.now;
-    old_of_[one.now] = one.before;
-  }
-}
-
-/// Matches each other manifold with the nearest one of the same objects that is left.
-void ManifoldMatcher::match_by_places(const ManifoldLists& before, const ManifoldLists& now) {
-  centers_.clear();
-  for (std::uint32_t i = 0; i < before.manifolds.size(); ++i) {
-    const Manifold& old = before.manifolds[i];
-    if (new_of_[i] == none) centers_.push_back({old.a, old.b, center_of(before, old), i});
-  }
-  const auto place = [](const Center& c) { return std::tuple(c.a, c.b, c.at.x, c.manifold); };
-  std::sort(centers_.begin(), centers_.end(),
-            [&](const Center& p, const Center& q) { return place(p) < place(q); });
-  for (std::uint32_t i = 0; i < now.manifolds.size(); ++i) {
-    const Manifold& manifold = now.manifolds[i];
-    if (old_of_[i] != none) continue;
-    const Vec3d at = center_of(now, manifold);
-    const auto start =
-        std::lower_bound(centers_.begin(), centers_.end(), Center{manifold.a, manifold.b, at, 0},
-                         [&](const Center& p, const Center& q) { return place(p) < place(q); });
-    std::uint32_t nearest = none;
-    double best = std::numeric_limits<double>::infinity();
-    // Returns false when all further ones are farther away.
-    const auto look_at = [&](const Center& c) {
-      if (c.a != manifold.a || c.b != manifold.b) return false;
-      const double along = c.at.x - at.x;
-      if (nearest != none && along * along > best) return false;
-      const double distance = squared_norm(c.at - at);
-      const bool is_nearer = nearest == none || distance < best || (distance == best && c.manifold < nearest);
-      if (new_of_[c.manifold] == none && is_nearer) {
-        best = distance;
-        nearest = c.manifold;
-      }
-      return true;
+  std::ranges::sort(named_);
+  candidates_.clear();
+  for (std::uint32_t i = found.begin; i < found.end; ++i) {
+    const Vec3d center = center_of(now, now.manifolds[i]);
+    const std::size_t first = candidates_.size();
+    const auto add = [&](std::uint32_t other, int common) {
+      const auto known =
+          std::find_if(candidates_.begin() + static_cast<std::ptrdiff_t>(first), candidates_.end(),
+                       [&](const Candidate& c) { return c.before == other; });
+      if (known != candidates_.end())
+        --known->minus_common;
+      else
+        candidates_.push_back(
+            {-common, squared_norm(center_of(before, before.manifolds[other]) - center), other, i});
     };
-    for (auto c = start; c != centers_.end() && look_at(*c); ++c) {
-    }
-    for (auto c = start; c != centers_.begin() && look_at(*std::prev(c)); --c) {
-    }
-    if (nearest == none) continue;
-    new_of_[nearest] = i;
-    old_of_[i] = nearest;
+    for_each_name(now, i, [&](std::uint32_t side, std::uint64_t name) {
+      auto named = std::ranges::lower_bound(named_, NamedManifold{name, side, 0});
+      for (std::uint32_t n = 0;
+           n < most_of_a_name && named != named_.end() && named->name == name && named->side == side;
+           ++n, ++named)
+        add(named->manifold, 1);
+    });
+    if (candidates_.size() > first) continue;
+    const std::uint32_t count = old.end - old.begin, middle = std::min(i - found.begin, count);
+    const std::uint32_t begin = middle - std::min(middle, most_without_one / 2);
+    for (std::uint32_t k = begin; k < std::min(begin + most_without_one, count); ++k) add(old.begin + k, 0);
   }
-}
-
-/// Gives the points of a manifold the ids of those of the old one: first where all features agree, then where
-/// one does, then the nearest.
-void ManifoldMatcher::match_points(const ManifoldLists& before, const Manifold& old, ManifoldLists& now,
-                                   const Manifold& manifold) {
-  struct Match {
-    int missing = 0;  // features that differ
-    double distance = 0;
-    std::uint32_t before = 0, now = 0;
-    auto order() const { return std::tuple(missing, distance, before, now); }
-  };
-  std::array<bool, 4> is_taken{};
-  const auto take = [&](std::uint32_t from, std::uint32_t to) {
-    ManifoldPoint& point = now.points[to];
-    bool& taken = is_taken[from - old.first_point];
-    if (taken || point.lasting == Lasting::stay) return;
-    taken = true;
-    point.id = before.points[from].id;
-    point.lasting = Lasting::stay;
-  };
-  const auto for_each_pair = [&](const auto& visit) {
-    for (std::uint32_t p = 0; p < old.point_count; ++p) {
-      for (std::uint32_t q = 0; q < manifold.point_count; ++q)
-        visit(old.first_point + p, manifold.first_point + q);
-    }
-  };
-  for_each_pair([&](std::uint32_t from, std::uint32_t to) {
-    if (before.names[from] == now.names[to]) take(from, to);
-  });
-  std::array<Match, 16> matches;
-  std::size_t count = 0;
-  for_each_pair([&](std::uint32_t from, std::uint32_t to) {
-    if (is_taken[from - old.first_point] || now.points[to].lasting == Lasting::stay) return;
-    const ManifoldLists::PointName &was = before.names[from], &is = now.names[to];
-    Match& match = matches[count++];
-    match = {2, squared_norm(before.points[from].position - now.points[to].position), from, to};
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (was.has_name[side] && is.has_name[side] && was.names[side] == is.names[side]) --match.missing;
-    }
-  });
-  std::sort(matches.begin(), matches.begin() + static_cast<std::ptrdiff_t>(count),
-            [](const Match& p, const Match& q) { return p.order() < q.order(); });
-  for (const Match& match : std::span(matches).first(count)) take(match.before, match.now);
+  std::ranges::sort(candidates_);
+  for (const Candidate& candidate : candidates_) {
+    std::uint32_t &of_old = new_of_[candidate.before - old.begin],
+                  &of_new = old_of_[candidate.now - found.begin];
+    if (of_old != none || of_new != none) continue;
+    of_old = candidate.now - found.begin;
+    of_new = candidate.before - old.begin;
+  }
 }
 
 }  // namespace supple

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <tuple>
 #include <utility>
 
 #include "geometry/vector.hpp"
+#include "queries/feature_name.hpp"
 
 namespace supple {
 namespace {
@@ -15,19 +15,59 @@ namespace {
 /// Normals of pairs in one patch are within 45 degrees of the normal of its nearest pair.
 constexpr double least_cosine = 0.70710678118654757;
 
-/// How far a point is beyond the plane through `origin`, along `direction`.
-double height_of(const Vec3d& point, const Vec3d& origin, const Vec3d& direction) {
-  const double largest = std::max(largest_magnitude(point), largest_magnitude(origin));
-  if (largest < 0x1p400 && largest > 0x1p-400) return dot(point - origin, direction);
-  if (!(largest > 0)) return 0;
-  const int exponent = -std::ilogb(largest) - 1;
-  return std::ldexp(dot(scaled(point, exponent) - scaled(origin, exponent), direction), -exponent);
+/// Of coordinates, which are scaled to at most 1/2.
+constexpr double rounding = 0x1p-40;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::uint64_t number_of(const FeatureName& name) {
+  const std::uint64_t first = name.kind == FeatureKind::face ? ~std::uint32_t{0} : name.first;
+  return first << 32 | name.last;
 }
 
 }  // namespace
 
-void ManifoldPass::find(const DetectResult& result, std::span<const ManifoldObject> objects) {
+/// Collects candidates, scaled so that no square overflows or vanishes.
+class ManifoldPass::Collector {
+ public:
+  /// `size` is the largest coordinate, and `deepest` the largest depth, if it is known.
+  Collector(std::vector<Candidate>& candidates, const Vec3d& normal, double size, double deepest)
+      : candidates_(candidates),
+        scale_(size > 0 ? std::min(0.5 / size, 0x1p1000) : 1),
+        deepest_(scale_ * deepest) {
+    candidates.clear();
+    // "Building an Orthonormal Basis, Revisited" (Duff et al. 2017)
+    const double sign = std::copysign(1.0, normal.z), w = -1 / (sign + normal.z),
+                 xy = normal.x * normal.y * w;
+    x_ = scale_ * Vec3d{1 + sign * normal.x * normal.x * w, sign * xy, -sign * normal.x};
+    y_ = scale_ * Vec3d{xy, sign + normal.y * normal.y * w, -normal.y};
+  }
+  void add(const Vec3d& position, double depth, std::uint32_t record, std::uint32_t part) {
+    const double x = dot(x_, position), y = dot(y_, position), scaled_depth = scale_ * depth;
+    // Of several deepest ones, the first point is farthest in a direction along no edge of a usual mesh.
+    const double far = x + 0.618 * y;
+    deepest_ = std::max(deepest_, scaled_depth);
+    const double least = deepest_ - rounding;
+    if (scaled_depth >= least && (far > farthest_ || depth_of_first_ < least)) {
+      first_ = candidates_.size();
+      farthest_ = far;
+      depth_of_first_ = scaled_depth;
+    }
+    candidates_.push_back({x, y, scaled_depth, position, depth, record, part});
+  }
+  std::size_t first() const { return first_; }
+
+ private:
+  std::vector<Candidate>& candidates_;
+  double scale_;
+  Vec3d x_, y_;
+  double deepest_, farthest_ = -infinity, depth_of_first_ = -infinity;
+  std::size_t first_ = 0;  // the first point to choose
+};
+
+void ManifoldPass::find(const DetectResult& result, std::span<ManifoldObject> objects, bool lists_all_pairs) {
   objects_ = objects;
+  lists_all_pairs_ = lists_all_pairs;
   next_.clear();
   std::uint32_t curve = 0;
   const auto add_curves_until = [&](const auto& is_before) {
@@ -60,263 +100,215 @@ void ManifoldPass::publish() {
   last_id_ = next_last_id_;
 }
 
+/// Chooses at most four candidates that span all of them, in the order around the normal; see `Manifold`.
+ManifoldPass::Choice ManifoldPass::choose_points(std::size_t first) const {
+  Choice choice{{first}, 1};
+  auto& [chosen, count] = choice;
+  // Takes the point with the largest value of those with more than `least`; of almost equal ones the deepest.
+  const auto add_largest = [&](double least, double weight_of_depth, const auto& value_of) {
+    std::size_t best = candidates_.size();
+    double most = -infinity;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const Candidate& p = candidates_[i];
+      const double value = value_of(p), weighed = value + weight_of_depth * p.scaled_depth;
+      const bool is_better = value > least && weighed > most;
+      most = is_better ? weighed : most;
+      best = is_better ? i : best;
+    }
+    if (best == candidates_.size()) return false;
+    chosen[count++] = best;
+    return true;
+  };
+  // Twice the area of the triangle of two chosen points and another one, which is to the left.
+  const auto area_of = [&](std::size_t from, std::size_t to) {
+    const Candidate &p = candidates_[chosen[from]], &q = candidates_[chosen[to]];
+    return [x = p.x, y = p.y, dx = q.x - p.x, dy = q.y - p.y](const Candidate& other) {
+      return dx * (other.y - y) - dy * (other.x - x);
+    };
+  };
+  const auto distance = [x = candidates_[first].x, y = candidates_[first].y](const Candidate& p) {
+    return std::sqrt((p.x - x) * (p.x - x) + (p.y - y) * (p.y - y));
+  };
+  if (candidates_.size() == 1 || !add_largest(rounding, 1, distance)) return choice;
+  const double length = distance(candidates_[chosen[1]]);
+  const double least = std::max(0x1p-10 * length, rounding) * length;
+  const auto area = area_of(0, 1);
+  if (!add_largest(least, length, [&](const Candidate& p) { return std::fabs(area(p)); })) return choice;
+  if (area(candidates_[chosen[2]]) < 0) std::swap(chosen[1], chosen[2]);
+  const std::array added{area_of(1, 0), area_of(2, 1), area_of(0, 2)};
+  if (!add_largest(least, length, [&](const Candidate& p) {
+        return std::max({added[0](p), added[1](p), added[2](p)});
+      }))
+    return choice;
+  // Between the ends of the edge that it is outside of.
+  const Candidate& last = candidates_[chosen[3]];
+  if (added[2](last) > std::max(added[0](last), added[1](last))) return choice;
+  std::swap(chosen[2], chosen[3]);
+  if (added[0](last) > added[1](last)) std::swap(chosen[1], chosen[2]);
+  return choice;
+}
+
 /// Reduces the candidates to the points of a manifold. `name_of` gives the features of a candidate.
 template <class NameOf>
-void ManifoldPass::add_manifold(const Manifold& manifold, const NameOf& name_of) {
-  const ManifoldChoice choice = point_choice_.choose(candidates_, manifold.normal);
+void ManifoldPass::add_manifold(const Manifold& manifold, std::size_t first, const NameOf& name_of) {
   Manifold& added = next_.manifolds.emplace_back(manifold);
   added.first_point = static_cast<std::uint32_t>(next_.points.size());
-  added.point_count = choice.count;
-  for (std::uint32_t i = 0; i < choice.count; ++i) {
-    const ManifoldCandidate& candidate = candidates_[choice.chosen[i]];
-    next_.points.push_back({0, Lasting::begin, candidate.position, candidate.depth});
-    next_.names.push_back(name_of(choice.chosen[i]));
+  const auto [chosen, count] = choose_points(first);
+  added.point_count = count;
+  for (const std::size_t i : std::span(chosen).first(count)) {
+    next_.points.push_back({0, Lasting::begin, candidates_[i].position, candidates_[i].depth});
+    next_.names.push_back(name_of(candidates_[i]));
   }
 }
 
 void ManifoldPass::add_curve(const DetectResult& result, std::uint32_t index) {
   const IntersectionCurve& curve = result.curves[index];
-  candidates_.clear();
-  for (const std::uint32_t i : result.contacts_of(curve)) {
-    const auto points = result.points_of(result.contacts[i]);
-    for (std::uint32_t k = 0; k < points.size(); ++k) candidates_.push_back({points[k].position, 0, i, k});
+  const auto contacts = result.contacts_of(curve);
+  const auto points = result.points_of(curve);
+  double size = largest_magnitude(curve.centroid);
+  for (const Vec3d& point : points) size = std::max(size, largest_magnitude(point));
+  Collector collector(candidates_, curve.normal, size, -infinity);
+  const double depth = curve.enclosed_count_a + curve.enclosed_count_b > 0 ? 0 : curve.depth;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    collector.add(points[k], depth, contacts[std::min(k, contacts.size() - 1)], Candidate::any_point);
+  // A branched curve has no points.
+  for (const std::uint32_t i : contacts.first(points.empty() ? contacts.size() : 0)) {
+    const auto of_contact = result.points_of(result.contacts[i]);
+    for (std::uint32_t k = 0; k < of_contact.size(); ++k) collector.add(of_contact[k].position, depth, i, k);
   }
   const std::size_t on_curve = candidates_.size();
-  add_enclosed(result, curve, ContactSide::a);
-  const std::size_t end_of_a = candidates_.size();
-  add_enclosed(result, curve, ContactSide::b);
-  if (candidates_.size() == on_curve) {
-    for (ManifoldCandidate& candidate : candidates_) candidate.depth = curve.depth;
+  for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
+    const bool is_a = side == ContactSide::a;
+    const SurfaceView& surface = objects_[is_a ? curve.a.index : curve.b.index].surface;
+    const Vec3d beyond = is_a ? -curve.normal : curve.normal;
+    // The vertices that the curve encloses beyond its plane.
+    for (const std::uint32_t v : result.enclosed_vertices_of(curve, side)) {
+      const Vec3d position = surface.position(v);
+      const double height = dot(position - curve.centroid, beyond);
+      if (height > 0 && is_finite(position))
+        collector.add(position, std::min(height, curve.depth), v,
+                      is_a ? Candidate::vertex_of_a : Candidate::vertex_of_b);
+    }
+  }
+  if (candidates_.size() == on_curve && depth != curve.depth) {
+    for (Candidate& candidate : candidates_) candidate.depth = curve.depth;
   }
   Manifold manifold{curve.a, curve.b};
   manifold.source = ManifoldSource::curve;
   manifold.normal = curve.normal;
   manifold.depth = curve.depth;
   manifold.record = index;
-  add_manifold(manifold, [&](std::size_t i) {
-    const auto& [position, depth, record, part] = candidates_[i];
-    ManifoldLists::PointName name;
-    if (i >= on_curve) {
-      const std::size_t side = i < end_of_a ? 0 : 1;
-      name.names[side] = {FeatureKind::vertex, record, record};
-      name.has_name[side] = true;
+  add_manifold(manifold, collector.first(), [&](const Candidate& candidate) {
+    if (candidate.part >= Candidate::vertex_of_a) {
+      ManifoldLists::PointName name{ManifoldLists::no_name, ManifoldLists::no_name};
+      name[candidate.part - Candidate::vertex_of_a] =
+          number_of({FeatureKind::vertex, candidate.record, candidate.record});
       return name;
     }
-    const Contact& contact = result.contacts[record];
-    const ContactPoint& point = result.points_of(contact)[part];
-    const auto of = [&](ObjectId object, const Feature& on, std::uint32_t triangle) {
-      return name_of(on, objects_[object.index].surface.triangle(triangle), triangle);
-    };
-    name.names = {of(contact.object_a, point.on_a, contact.triangle_a),
-                  of(contact.object_b, point.on_b, contact.triangle_b)};
-    name.has_name = {true, true};
-    return name;
+    const Contact& contact = result.contacts[candidate.record];
+    return ManifoldLists::PointName{~std::uint64_t{candidate.part} << 32 | contact.triangle_a,
+                                    ~std::uint64_t{candidate.part} << 32 | contact.triangle_b};
   });
-}
-
-/// Adds the vertices that the curve encloses beyond its plane.
-void ManifoldPass::add_enclosed(const DetectResult& result, const IntersectionCurve& curve,
-                                ContactSide side) {
-  const bool is_a = side == ContactSide::a;
-  const SurfaceView& surface = objects_[is_a ? curve.a.index : curve.b.index].surface;
-  const Vec3d beyond = is_a ? -curve.normal : curve.normal;
-  for (const std::uint32_t v : result.enclosed_vertices_of(curve, side)) {
-    const Vec3d position = surface.position(v);
-    const double height = height_of(position, curve.centroid, beyond);
-    if (height > 0 && is_finite(position))
-      candidates_.push_back({position, std::min(height, curve.depth), v, 0});
-  }
-}
-
-/// Lists in which directions the pairs of a group keep the objects apart. Returns false when the surfaces of
-/// two objects cross.
-bool ManifoldPass::list_directions(std::span<const ProximityPair> pairs, const ContactGroup& group) {
-  const ManifoldObject &a = objects_[group.a.index], &b = objects_[group.b.index];
-  double size = 0;
-  for (const ProximityPair& pair : pairs) size = std::max(size, largest_magnitude(pair.point_a));
-  const double touching = 0x1p-40 * size;  // smaller distances are rounding, and have no direction
-  directions_.clear();
-  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-    if (pairs[i].distance > touching) {
-      directions_.push_back({i, false, false, pairs[i].normal});
-      continue;
-    }
-    const std::span<const Vec3d> normals = touching_.find(pairs[i], a, b);
-    if (normals.empty() && group.a != group.b) return false;
-    for (const Vec3d& normal : normals) directions_.push_back({i, true, normals.size() > 1, normal});
-  }
-  return true;
-}
-
-/// Calls `visit` for each vertex id of an element.
-template <class Visit>
-void ManifoldPass::for_each_vertex(ObjectId object, FeatureKind kind,
-                                   const std::array<std::uint32_t, 2>& element, const Visit& visit) const {
-  if (kind == FeatureKind::face) {
-    for (const std::uint32_t v : objects_[object.index].surface.triangle(element[0])) visit(v);
-    return;
-  }
-  visit(element[0]);
-  if (kind == FeatureKind::edge) visit(element[1]);
-}
-
-/// The place of a vertex in `vertices_`, or none.
-std::uint32_t ManifoldPass::place_of(std::uint32_t side, std::uint32_t vertex) const {
-  const std::uint32_t place = places_[side][vertex];  // possibly that of an earlier group
-  const bool is_there =
-      place < vertices_.size() && vertices_[place].side == side && vertices_[place].vertex == vertex;
-  return is_there ? place : none;
-}
-
-/// Lists which directions use each vertex.
-void ManifoldPass::link_pairs(std::span<const ProximityPair> pairs, const ContactGroup& group) {
-  vertices_.clear();
-  for (const auto& [side, object] : {std::pair(0u, group.a), std::pair(1u, group.b)})
-    places_[side].resize(
-        std::max(places_[side].size(), objects_[object.index].surface.around->vertex_count()));
-  vertices_of_.resize(directions_.size());
-  vertex_counts_.assign(directions_.size(), 0);
-  for (std::uint32_t d = 0; d < directions_.size(); ++d) {
-    const ProximityPair& pair = pairs[directions_[d].pair];
-    auto& vertices = vertices_of_[d];
-    std::uint8_t& count = vertex_counts_[d];
-    // Within one object, both sides have the same vertices.
-    const auto add = [&](std::uint32_t side, ObjectId object, FeatureKind kind,
-                         const std::array<std::uint32_t, 2>& element) {
-      if (group.a == group.b) side = 0;
-      for_each_vertex(object, kind, element, [&](std::uint32_t v) {
-        std::uint32_t place = place_of(side, v);
-        if (place == none) {
-          place = places_[side][v] = static_cast<std::uint32_t>(vertices_.size());
-          vertices_.push_back({side, v});
-        }
-        ++vertices_[place].first_use;
-        vertices[count++] = place;
-      });
-    };
-    add(0, pair.object_a, pair.kind_a, pair.element_a);
-    add(1, pair.object_b, pair.kind_b, pair.element_b);
-  }
-  std::uint32_t end = 0;
-  for (Vertex& vertex : vertices_) vertex.first_use = end += vertex.first_use;
-  uses_.resize(end);
-  vertices_.push_back({none, none, end});
-  for (std::uint32_t d = static_cast<std::uint32_t>(directions_.size()); d-- > 0;) {
-    for (std::size_t k = 0; k < vertex_counts_[d]; ++k) uses_[--vertices_[vertices_of_[d][k]].first_use] = d;
-  }
 }
 
 /// Whether the elements of a pair are as far apart along a direction of the nearest pair as that pair, but
 /// for rounding.
 bool ManifoldPass::is_kept_apart(const ProximityPair& pair, double distance, const Vec3d& direction) const {
-  double low_a = std::numeric_limits<double>::infinity(), high_b = -low_a, size = distance;
-  const auto height = [&](ObjectId object, std::uint32_t vertex) {
-    const Vec3d position = objects_[object.index].surface.position(vertex);
-    size = std::max(size, largest_magnitude(position));
-    return dot(position, direction);
-  };
-  for_each_vertex(pair.object_a, pair.kind_a, pair.element_a,
-                  [&](std::uint32_t v) { low_a = std::min(low_a, height(pair.object_a, v)); });
-  for_each_vertex(pair.object_b, pair.kind_b, pair.element_b,
-                  [&](std::uint32_t v) { high_b = std::max(high_b, height(pair.object_b, v)); });
-  return low_a - high_b >= distance - 0x1p-40 * size;
-}
-
-/// Calls `visit` for the place of each vertex of the pairs that is in a triangle with this one.
-template <class Visit>
-void ManifoldPass::for_each_linked_vertex(const ContactGroup& group, std::uint32_t place,
-                                          const Visit& visit) const {
-  const std::uint32_t side = vertices_[place].side;
-  const SurfaceView& surface = objects_[side == 0 ? group.a.index : group.b.index].surface;
-  for (const std::uint32_t triangle : surface.around->around(vertices_[place].vertex)) {
-    for (const std::uint32_t corner : surface.triangle(triangle)) {
-      if (const std::uint32_t other = place_of(side, corner); other != none) visit(other);
-    }
-  }
-}
-
-/// Lists the directions of the patch of a seed.
-void ManifoldPass::grow_patch(std::span<const ProximityPair> pairs, const ContactGroup& group,
-                              std::uint32_t seed) {
-  patch_.assign(1, seed);
-  is_in_patch_[seed] = 1;
-  --left_;
-  const auto& [nearest, touches, is_one_of_several, normal] = directions_[seed];
-  const auto scan = [&](std::uint32_t place) {
-    if (std::exchange(vertices_[place].scanned_by, seed) == seed) return;
-    for (std::uint32_t u = vertices_[place].first_use; u < vertices_[place + 1].first_use; ++u) {
-      const std::uint32_t other = uses_[u];
-      if (is_in_patch_[other] != 0) continue;
-      const ProximityPair& pair = pairs[directions_[other].pair];
-      const bool has_direction = dot(directions_[other].normal, normal) >= least_cosine;
-      if (!has_direction &&
-          (directions_[other].is_one_of_several || !is_kept_apart(pair, pairs[nearest].distance, normal)))
-        continue;
-      is_in_patch_[other] = 1;
-      --left_;
-      if (has_direction) patch_.push_back(other);
+  double low_a = dot(pair.point_a, direction), high_b = dot(pair.point_b, direction);
+  double size = std::max(distance, size_);
+  const auto is_apart = [&] { return low_a - high_b >= distance - 0x1p-40 * size; };
+  const auto for_each_height = [&](ObjectId id, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
+                                   const auto& visit) {
+    const SurfaceView& surface = objects_[id.index].surface;
+    Triangle vertices{element[0], element[1], element[1]};
+    if (kind == FeatureKind::face) vertices = surface.triangle(element[0]);
+    for (const std::uint32_t vertex : vertices) {
+      const Vec3d position = surface.position(vertex);
+      size = std::max(size, largest_magnitude(position));
+      visit(dot(position, direction));
     }
   };
-  const auto places_of = [&](std::uint32_t direction) {
-    return std::span(vertices_of_[direction]).first(vertex_counts_[direction]);
-  };
-  // Vertices in common are found faster than triangles.
-  std::size_t next = 0, next_linked = 0;
-  while (left_ > 0 && next_linked < patch_.size()) {
-    for (; next < patch_.size(); ++next) {
-      for (const std::uint32_t place : places_of(patch_[next])) scan(place);
-    }
-    if (left_ == 0) return;
-    for (const std::uint32_t place : places_of(patch_[next_linked++])) {
-      if (std::exchange(vertices_[place].linked_by, seed) != seed) for_each_linked_vertex(group, place, scan);
-    }
-  }
+  // The height of a vertex is known.
+  if (is_apart() && pair.kind_a != FeatureKind::vertex)
+    for_each_height(pair.object_a, pair.kind_a, pair.element_a,
+                    [&](double h) { low_a = std::min(low_a, h); });
+  if (is_apart() && pair.kind_b != FeatureKind::vertex)
+    for_each_height(pair.object_b, pair.kind_b, pair.element_b,
+                    [&](double h) { high_b = std::max(high_b, h); });
+  return is_apart();
 }
 
-/// Adds the manifold of the patch with this seed, unless it would move a body deeper into a solid.
+/// Adds the manifold of the patch around the nearest pair, unless it would move a body deeper into a solid.
+/// Keeps the directions in no patch. `direction_of(i)` gives each of `count` directions. `has_nearest`: no
+/// pair of the objects is nearer.
+template <class DirectionOf>
 void ManifoldPass::add_patch(std::span<const ProximityPair> pairs, const ContactGroup& group,
-                             std::uint32_t seed) {
-  grow_patch(pairs, group, seed);
-  const std::uint32_t nearest = directions_[seed].pair;
-  if (!directions_[seed].touches &&
-      touching_.starts_inside(pairs[nearest], objects_[group.a.index], objects_[group.b.index]))
-    return;
-  candidates_.clear();
-  for (const std::uint32_t d : patch_) {
-    const ProximityPair& pair = pairs[directions_[d].pair];
-    candidates_.push_back(
-        {0.5 * pair.point_a + 0.5 * pair.point_b, 0 - pair.distance, directions_[d].pair, 0});
+                             const Direction& nearest, bool has_nearest, std::size_t count,
+                             const DirectionOf& direction_of) {
+  Collector collector(candidates_, nearest.normal, size_, -nearest.distance);
+  left_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Direction& direction = direction_of(i);
+    const ProximityPair& pair = pairs[direction.pair];
+    if (dot(direction.normal, nearest.normal) >= least_cosine)
+      collector.add(0.5 * pair.point_a + 0.5 * pair.point_b, 0 - pair.distance, direction.pair, 0);
+    else if (direction.is_one_of_several || group.a == group.b ||
+             !is_kept_apart(pair, nearest.distance, nearest.normal))
+      left_.push_back(direction);
   }
+  std::swap(directions_, left_);
+  ManifoldObject &a = objects_[group.a.index], &b = objects_[group.b.index];
+  // The nearest points of two objects lie in the other one, or the way between them starts outside.
+  const bool may_be_inside = !has_nearest || a.may_contain(pairs[nearest.pair].point_b) ||
+                             b.may_contain(pairs[nearest.pair].point_a);
+  if (may_be_inside && !nearest.touches && touching_.starts_inside(pairs[nearest.pair], a, b)) return;
   Manifold manifold{group.a, group.b};
   manifold.source = ManifoldSource::pairs;
-  manifold.normal = directions_[seed].normal;
-  manifold.depth = 0 - pairs[nearest].distance;
-  manifold.record = group.first_contact + nearest;
-  add_manifold(manifold, [&](std::size_t i) {
-    const ProximityPair& pair = pairs[candidates_[i].record];
-    return ManifoldLists::PointName{{FeatureName{pair.kind_a, pair.element_a[0], pair.element_a[1]},
-                                     FeatureName{pair.kind_b, pair.element_b[0], pair.element_b[1]}},
-                                    {true, true}};
+  manifold.normal = nearest.normal;
+  manifold.depth = 0 - nearest.distance;
+  manifold.record = group.first_contact + nearest.pair;
+  add_manifold(manifold, collector.first(), [&](const Candidate& candidate) {
+    const ProximityPair& pair = pairs[candidate.record];
+    return ManifoldLists::PointName{number_of({pair.kind_a, pair.element_a[0], pair.element_a[1]}),
+                                    number_of({pair.kind_b, pair.element_b[0], pair.element_b[1]})};
   });
 }
 
 void ManifoldPass::add_patches(const DetectResult& result, const ContactGroup& group) {
   const std::span<const ProximityPair> pairs = result.proximity_pairs_of(group);
-  if (!list_directions(pairs, group) || directions_.empty()) return;
-  link_pairs(pairs, group);
-  is_in_patch_.assign(directions_.size(), 0);
-  left_ = directions_.size();
-  by_distance_.resize(directions_.size());
-  for (std::uint32_t d = 0; d < by_distance_.size(); ++d) by_distance_[d] = d;
-  const auto is_nearer = [&](std::uint32_t p, std::uint32_t q) {
-    return std::pair(pairs[directions_[p].pair].distance, p) <
-           std::pair(pairs[directions_[q].pair].distance, q);
+  double least = infinity;
+  std::size_t first = 0;
+  size_ = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    size_ = std::max(size_, largest_magnitude(pairs[i].point_a));
+    first = pairs[i].distance < least ? i : first;
+    least = std::min(least, pairs[i].distance);
+  }
+  const auto direction_of = [&](std::size_t i) {
+    return Direction{pairs[i].normal, pairs[i].distance, static_cast<std::uint32_t>(i)};
   };
-  add_patch(pairs, group, *std::ranges::min_element(by_distance_, is_nearer));
-  if (left_ == 0) return;
-  std::ranges::sort(by_distance_, is_nearer);
-  for (const std::uint32_t seed : by_distance_) {
-    if (is_in_patch_[seed] == 0) add_patch(pairs, group, seed);
+  const double touching = 0x1p-40 * size_;  // smaller distances are rounding, and have no direction
+  directions_.clear();
+  if (least > touching) {
+    add_patch(pairs, group, direction_of(first), lists_all_pairs_, pairs.size(), direction_of);
+  } else {
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+      if (pairs[i].distance > touching) {
+        directions_.push_back(direction_of(i));
+        continue;
+      }
+      const std::span<const Vec3d> normals =
+          touching_.find(pairs[i], objects_[group.a.index], objects_[group.b.index]);
+      if (normals.empty() && group.a != group.b) return;  // the surfaces cross
+      for (const Vec3d& normal : normals)
+        directions_.push_back({normal, pairs[i].distance, i, true, normals.size() > 1});
+    }
+  }
+  while (!directions_.empty()) {
+    const Direction nearest = *std::ranges::min_element(
+        directions_, {}, [](const Direction& d) { return std::pair(d.distance, d.pair); });
+    add_patch(pairs, group, nearest, false, directions_.size(),
+              [&](std::size_t i) -> const Direction& { return directions_[i]; });
   }
 }
 

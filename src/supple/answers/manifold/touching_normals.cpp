@@ -23,7 +23,7 @@ void add_once(const Vec3d& direction, std::vector<Vec3d>& directions) {
 }  // namespace
 
 /// The smallest feature of the element that has the point, but for rounding.
-FeatureName TouchingNormals::feature_of(const ManifoldObject& object, FeatureKind kind,
+FeatureName TouchingNormals::feature_of(ManifoldObject& object, FeatureKind kind,
                                         const std::array<std::uint32_t, 2>& element,
                                         const std::array<double, 3>& weights, const Vec3d& point) {
   Triangle vertices{element[0], element[1], element[1]};
@@ -40,11 +40,11 @@ FeatureName TouchingNormals::feature_of(const ManifoldObject& object, FeatureKin
   return {kept == 2 ? FeatureKind::edge : FeatureKind::vertex, first, last};
 }
 
-void TouchingNormals::list(const ManifoldObject& object, const FeatureName& feature, const Vec3d& point,
+void TouchingNormals::list(ManifoldObject& object, const FeatureName& feature, const Vec3d& point,
                            Around& around) const {
   const SurfaceView& surface = object.surface;
-  around = {feature, std::move(around.corners),   std::move(around.edges), std::move(around.normals),
-            {},      object.object->options.solid};
+  around = {feature,        std::move(around.corners), std::move(around.edges), std::move(around.normals), {},
+            object.is_solid};
   for (std::vector<Vec3d>* const vectors : {&around.corners, &around.edges, &around.normals})
     vectors->clear();
   const auto add_triangle = [&](std::uint32_t id) {
@@ -61,7 +61,7 @@ void TouchingNormals::list(const ManifoldObject& object, const FeatureName& feat
   } else {
     add_edge(feature.first, feature.last);
     if (feature.kind == FeatureKind::edge) around.corners.push_back(surface.position(feature.first) - point);
-    for (const std::uint32_t id : surface.around->around(feature.first)) {
+    for (const std::uint32_t id : object.around(feature.first)) {
       const Triangle& triangle = surface.triangle(id);
       if (std::ranges::find(triangle, feature.last) == triangle.end()) continue;
       add_triangle(id);
@@ -74,7 +74,7 @@ void TouchingNormals::list(const ManifoldObject& object, const FeatureName& feat
 }
 
 /// Lists the surfaces around the points of a pair.
-void TouchingNormals::list(const ProximityPair& pair, const ManifoldObject& a, const ManifoldObject& b) {
+void TouchingNormals::list(const ProximityPair& pair, ManifoldObject& a, ManifoldObject& b) {
   list(a, feature_of(a, pair.kind_a, pair.element_a, pair.barycentric_a, pair.point_a), pair.point_a, a_);
   list(b, feature_of(b, pair.kind_b, pair.element_b, pair.barycentric_b, pair.point_b), pair.point_b, b_);
 }
@@ -91,8 +91,8 @@ void TouchingNormals::add_if_apart(const Vec3d& normal) {
   if (is_before(a_, normal) && is_before(b_, -normal)) add_once(normal, normals_);
 }
 
-std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, const ManifoldObject& a,
-                                             const ManifoldObject& b) {
+std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, ManifoldObject& a,
+                                             ManifoldObject& b) {
   rounding_ = 0x1p-40 * std::max(largest_magnitude(pair.point_a), largest_magnitude(pair.point_b));
   list(pair, a, b);
   normals_.clear();
@@ -141,14 +141,13 @@ std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, const Ma
   return normals_;
 }
 
-bool TouchingNormals::starts_inside(const ProximityPair& pair, const ManifoldObject& a,
-                                    const ManifoldObject& b) {
-  const auto starts_in = [](const ManifoldObject& object, const FeatureName& feature, const Vec3d& way) {
+bool TouchingNormals::starts_inside(const ProximityPair& pair, ManifoldObject& a, ManifoldObject& b) {
+  const auto starts_in = [](ManifoldObject& object, const FeatureName& feature, const Vec3d& way) {
     const SurfaceView& surface = object.surface;
     const auto looks_away = [&](std::uint32_t id) { return dot(unit_normal(surface.corners(id)), way) < 0; };
     if (feature.kind == FeatureKind::face) return looks_away(feature.first);
     bool has_face = false;
-    for (const std::uint32_t id : surface.around->around(feature.first)) {
+    for (const std::uint32_t id : object.around(feature.first)) {
       const Triangle& triangle = surface.triangle(id);
       if (std::ranges::find(triangle, feature.last) == triangle.end()) continue;
       if (!looks_away(id)) return false;
@@ -157,10 +156,10 @@ bool TouchingNormals::starts_inside(const ProximityPair& pair, const ManifoldObj
     return has_face;
   };
   rounding_ = 0;
-  return (a.object->options.solid &&
+  return (a.is_solid &&
           starts_in(a, feature_of(a, pair.kind_a, pair.element_a, pair.barycentric_a, pair.point_a),
                     -pair.normal)) ||
-         (b.object->options.solid &&
+         (b.is_solid &&
           starts_in(b, feature_of(b, pair.kind_b, pair.element_b, pair.barycentric_b, pair.point_b),
                     pair.normal));
 }

@@ -13,8 +13,21 @@ namespace supple {
 
 /// The data of an object that manifolds read.
 struct ManifoldObject {
-  SurfaceView surface;  ///< `around` is there for objects with proximity pairs
+  SurfaceView surface;
   WorldObject* object = nullptr;
+  Aabb box{};  ///< has the whole surface
+  bool is_solid = false;
+
+  /// The triangles around a vertex.
+  std::span<const std::uint32_t> around(std::uint32_t vertex) {
+    if (surface.around == nullptr) surface.around = &object->vertex_triangles();
+    return surface.around->around(vertex);
+  }
+  /// Whether the point may be inside the solid. This is quick.
+  bool may_contain(const Vec3d& point) const {
+    return is_solid && point.x >= box.min.x && point.y >= box.min.y && point.z >= box.min.z &&
+           point.x <= box.max.x && point.y <= box.max.y && point.z <= box.max.z;
+  }
 };
 
 /// Finds the directions in which two surfaces that touch at a point keep each other apart. The points of a
@@ -26,10 +39,10 @@ class TouchingNormals {
   /// surface fits into the other one: the normals of the faces that the other surface lies in front of. None,
   /// where the surfaces cross. What a solid bounds is never on the other side of the plane. Valid until the
   /// next call.
-  std::span<const Vec3d> find(const ProximityPair& pair, const ManifoldObject& a, const ManifoldObject& b);
+  std::span<const Vec3d> find(const ProximityPair& pair, ManifoldObject& a, ManifoldObject& b);
 
   /// Whether the way between the points of a pair starts inside of a solid.
-  bool starts_inside(const ProximityPair& pair, const ManifoldObject& a, const ManifoldObject& b);
+  bool starts_inside(const ProximityPair& pair, ManifoldObject& a, ManifoldObject& b);
 
  private:
   /// The surface of one side around the point of a pair. Corners and edges are relative to it.
@@ -41,10 +54,9 @@ class TouchingNormals {
     bool is_solid = false;
   };
 
-  void list(const ProximityPair& pair, const ManifoldObject& a, const ManifoldObject& b);
-  void list(const ManifoldObject& object, const FeatureName& feature, const Vec3d& point,
-            Around& around) const;
-  FeatureName feature_of(const ManifoldObject& object, FeatureKind kind,
+  void list(const ProximityPair& pair, ManifoldObject& a, ManifoldObject& b);
+  void list(ManifoldObject& object, const FeatureName& feature, const Vec3d& point, Around& around) const;
+  FeatureName feature_of(ManifoldObject& object, FeatureKind kind,
                          const std::array<std::uint32_t, 2>& element, const std::array<double, 3>& weights,
                          const Vec3d& point);
   bool is_before(const Around& around, const Vec3d& normal) const;
