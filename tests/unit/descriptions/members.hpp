@@ -38,8 +38,8 @@ inline auto members_of(ComparisonOptions& o) {
   return std::tie(a, b, c, d);
 }
 inline auto members_of(SceneOptions& o) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = o;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
 }
 inline auto members_of(BroadPhaseOptions& o) {
   auto& [a, b, c, d] = o;
