@@ -144,16 +144,16 @@ void WayOut::try_corners(std::span<const WayCandidate> candidates) {
 }
 
 /// The depth from which on no probe is inside: it may leave one part of the other body and enter the next
-/// one.
-double WayOut::depth_without_return(const Way& way) {
-  constexpr int most = 16;  // parts, before rounding decides
+/// one. `parts` is how many of them may follow, before rounding decides.
+double WayOut::depth_without_return(const Way& way, int& parts) {
   double depth = way.depth;
   bool is_free = bodies_[0].queried == nullptr;
-  for (int i = 0; i < most && !is_free; ++i) {
+  for (; parts > 0 && !is_free; --parts) {
     is_free = true;
     for (std::size_t side = 0; side < 2; ++side) {
       for (const Vec3d& probe : probes_[side]) {
-        const double moved = depth * (1 + 0x1p-30) + 0x1p-44, sign = side == 0 ? 1 : -1;
+        const double rounding = 0x1p-44 + 0x1p-50 * scale_ * largest_magnitude(probe);
+        const double moved = depth * (1 + 0x1p-30) + rounding, sign = side == 0 ? 1 : -1;
         const Vec3d place = probe + (sign * moved / scale_) * way.normal;
         const double exit =
             is_in_box(bodies_[1 - side].queried->box, place) ? cast(side, place, way.normal, false) : -1;
@@ -172,6 +172,7 @@ WayOut::Way WayOut::find(std::span<const WayCandidate> candidates) {
   for (const WayCandidate& candidate : candidates)
     tried_.push_back(try_along(candidate.normal, least_depth()));
   try_corners(candidates);
+  int parts = 64;  // of all candidates
   for (;;) {
     const double least = least_depth();
     Tried* best = nullptr;
@@ -180,7 +181,7 @@ WayOut::Way WayOut::find(std::span<const WayCandidate> candidates) {
       if (best == nullptr || is_before(tried.way.normal, best->way.normal)) best = &tried;
     }
     if (least == none) return best->way;
-    const double depth = depth_without_return(best->way);
+    const double depth = depth_without_return(best->way, parts);
     if (depth == best->way.depth) return best->way;
     best->way.depth = depth;
     for (Tried& tried : tried_) {

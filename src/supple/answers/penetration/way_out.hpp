@@ -67,7 +67,7 @@ class WayOut {
   Tried try_along(const Vec3d& normal, double limit);
   double cast(std::size_t side, const Vec3d& point, const Vec3d& normal, bool is_inside);
   void try_corners(std::span<const WayCandidate> candidates);
-  double depth_without_return(const Way& way);
+  double depth_without_return(const Way& way, int& parts);
   double least_depth() const;
 
   std::array<Body, 2> bodies_;
