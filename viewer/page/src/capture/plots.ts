@@ -19,7 +19,7 @@ export interface PlotForm {
   scale: number;
 }
 
-const LINES = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.vermillion, OKABE_ITO.purple, OKABE_ITO.sky, "#8a8f98", "#9c6b3c"];
+const LINES = [OKABE_ITO.blue, OKABE_ITO.orange, OKABE_ITO.green, OKABE_ITO.vermillion, OKABE_ITO.purple, OKABE_ITO.sky, "#8a8f98", "#9c6b3c", "#5b4bb5"];
 const lineColour = (i: number): string => LINES[i % LINES.length]!;
 
 /** Columns of the second of two recordings end with `_b`. */
