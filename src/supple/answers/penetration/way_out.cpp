@@ -157,7 +157,7 @@ double WayOut::depth_without_return(const Way& way, int& parts) {
         const Vec3d place = probe + (sign * moved / scale_) * way.normal;
         const double exit =
             is_in_box(bodies_[1 - side].queried->box, place) ? cast(side, place, way.normal, false) : -1;
-        if (exit < 0) continue;
+        if (exit <= 0) continue;  // on the surface, it is not inside
         depth = moved + exit;
         is_free = false;
       }
