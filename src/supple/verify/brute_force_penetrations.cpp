@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "core/sort_once.hpp"
@@ -267,7 +268,7 @@ void verify_manifolds(const ObjectPair& pair, const std::array<const PlainObject
       if (-depth > 0x1p-40 * size) normal = result.proximity_pairs[manifold.record].normal;
     }
     const auto points = result.points_of(manifold);
-    double most = points.front().depth;
+    double most = -std::numeric_limits<double>::infinity();
     bool is_right = points.size() <= 4 && manifold.depth == depth &&
                     norm(manifold.normal - normal) < 0x1p-40 &&
                     (normal == Vec3d{} || std::fabs(norm(normal) - 1) < 0x1p-40);
