@@ -94,7 +94,7 @@ TEST(StepWork, DoesNotGrowWithTheLengthOfTheStep) {
   expect_bounded(pile, lengths, "pile");
 }
 
-/// Of objects that are far apart for the whole step, no elements are compared.
+/// The search compares no elements of objects that are far apart for the whole step.
 TEST(StepWork, OfDistantObjectsIsThatOfNodes) {
   RandomNumbers random(2);
   std::vector<Body> bodies;

@@ -15,7 +15,7 @@ namespace {
 /// Normals of pairs in one patch are within 45 degrees of the normal of its nearest pair.
 constexpr double least_cosine = 0.70710678118654757;
 
-/// Of coordinates, which are scaled to at most 1/2.
+/// Bounds the rounding of coordinates that are scaled to at most 1/2.
 constexpr double rounding = 0x1p-40;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -44,7 +44,8 @@ class ManifoldPass::Collector {
   }
   void add(const Vec3d& position, double depth, std::uint32_t record, std::uint32_t part) {
     const double x = dot(x_, position), y = dot(y_, position), scaled_depth = scale_ * depth;
-    // Of several deepest ones, the first point is farthest in a direction along no edge of a usual mesh.
+    // When several points are deepest, the one that is farthest in a direction comes first. Edges of meshes
+    // are seldom at right angles to this direction, so the point is a corner.
     const double far = x + 0.618 * y;
     deepest_ = std::max(deepest_, scaled_depth);
     const double least = deepest_ - rounding;
