@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "support/depth_properties.hpp"
 #include "support/random.hpp"
@@ -44,6 +48,39 @@ TEST(DepthProperties, OfRandomSolids) {
   }
   // Of 10,000 pairs, 0.6 % of the moves leave an overlap, and 2.1 % of the depths are not steady.
   EXPECT_LE(unsteady, count / 25) << "of " << count;
+}
+
+/// Convex bodies in front of and behind a plane, with a vertex, an edge or a face in it.
+TEST(DepthProperties, OfSolidsThatOnlyTouch) {
+  std::array<int, 3> curves_of_touching{};  // by the least number of corners in the plane
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    RandomNumbers random(seed);
+    const std::int64_t slope = random.below(3), other_slope = random.below(4);
+    Scene scene({.contacts = ContactKinds::penetration, .curves = true, .threads = 1});
+    std::size_t least = 3;
+    for (const std::int64_t side : {1, -1}) {
+      const std::size_t in_plane = 1 + random.below(3);
+      least = std::min(least, in_plane);
+      std::vector<solids::Point> points;
+      while (points.size() < in_plane + 4) {
+        const std::int64_t x = points.size() < in_plane ? 0 : 1 + random.below(4), y = random.below(4),
+                           z = random.below(4);
+        points.push_back({side * x + slope * y - other_slope * z, y, z});
+      }
+      // Not in one plane.
+      points.push_back({side * 5, 0, 0});
+      points.push_back({side * 5 + slope, 1, 0});
+      points.push_back({side * 6 - other_slope, 0, 1});
+      solids::Body body;
+      body.add_piece(solids::hull_of(points));
+      scene.add(body.mesh(), {.solid = true});
+    }
+    for (const IntersectionCurve& curve : scene.detect().curves) {
+      ++curves_of_touching[least - 1];
+      EXPECT_LE(curve.depth, 0x1p-55) << "seed " << seed;  // rounding
+    }
+  }
+  for (const int curves : curves_of_touching) EXPECT_GT(curves, 10);
 }
 
 }  // namespace

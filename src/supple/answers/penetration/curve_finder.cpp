@@ -207,8 +207,7 @@ void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& 
   }
   curve.enclosed_count_a = static_cast<std::uint32_t>(enclose(members, false, lists));
   curve.enclosed_count_b = static_cast<std::uint32_t>(enclose(members, true, lists));
-  find_way_out(members, curve);
-  visited_ += way_out_.triangle_count();
+  if (!find_separation(members, curve)) find_way_out(members, curve);
   lists.curves.push_back(curve);
 }
 
@@ -272,10 +271,27 @@ bool CurveFinder::only_touches(std::uint32_t i) const {
   return is_outside(a, b) || is_outside(b, a);
 }
 
-/// Lists the normals of the faces on which the curve lies: those of b, and the reverse of those of a.
-/// Contacts that only touch count where there are no others. Of many normals, those on an eighth of the
-/// curve.
-void CurveFinder::list_face_normals(std::span<const std::uint32_t> members) {
+/// Whether the triangles of the other side are nowhere behind a face, and those of its own side nowhere in
+/// front of it.
+bool CurveFinder::separates(std::size_t side, std::uint32_t face,
+                            std::span<const std::uint32_t> members) const {
+  const std::array<SurfaceView, 2> surfaces{input_.a, input_.b};
+  const TrianglePoints plane = surfaces[side].corners(face);
+  bool used_exact = false;
+  const auto is_on_its_side = [&](std::uint32_t i, std::size_t of) {
+    const TrianglePoints corners = surfaces[of].corners(triangle_of(i, of));
+    return std::all_of(corners.begin(), corners.end(), [&](const Vec3d& p) {
+      const int height = orient3d(plane[0], plane[1], plane[2], p, used_exact);
+      return of == side ? height <= 0 : height >= 0;
+    });
+  };
+  return std::all_of(members.begin(), members.end(),
+                     [&](std::uint32_t i) { return is_on_its_side(i, 1 - side) && is_on_its_side(i, side); });
+}
+
+/// Lists the normals of the faces on which the curve lies: those of b, and the reverse of those of a. Of many
+/// normals, those on an eighth of the curve. Skips contacts that only touch on request.
+void CurveFinder::list_face_normals(std::span<const std::uint32_t> members, bool counts_touching) {
   constexpr std::size_t few = 12;
   double whole = 0;
   const auto add = [&](const Vec3d& n, double length, std::uint32_t triangle, std::uint8_t side) {
@@ -284,18 +300,15 @@ void CurveFinder::list_face_normals(std::span<const std::uint32_t> members) {
       directions_.push_back(
           {{rounded(n.x), rounded(n.y), rounded(n.z)}, side, {n.x, n.y, n.z}, triangle, length});
   };
-  for (const bool counts_touching : {false, true}) {
-    directions_.clear();
-    for (const std::uint32_t i : members) {
-      const double length = length_of(i);
-      if (length == 0 || (!counts_touching && only_touches(i))) continue;
-      whole += length;
-      for (std::uint8_t side = 0; side < 2; ++side) {
-        const Vec3d& outward = face_normals_[i][is_turned(i) ? 1 - side : side];
-        add(side == 0 ? Vec3d{} - outward : outward, length, triangle_of(i, side), side);
-      }
+  directions_.clear();
+  for (const std::uint32_t i : members) {
+    const double length = length_of(i);
+    if (length == 0 || (!counts_touching && only_touches(i))) continue;
+    whole += length;
+    for (std::uint8_t side = 0; side < 2; ++side) {
+      const Vec3d& outward = face_normals_[i][is_turned(i) ? 1 - side : side];
+      add(side == 0 ? Vec3d{} - outward : outward, length, triangle_of(i, side), side);
     }
-    if (whole > 0) break;
   }
   std::sort(directions_.begin(), directions_.end());
   std::size_t count = 0;
@@ -403,6 +416,24 @@ void CurveFinder::link_regions() {
                  {input_.b, input_.same_object ? nullptr : input_.queried_b});
 }
 
+/// Finds bodies that only touch: the plane of a face is between their triangles, and nothing is inside.
+bool CurveFinder::find_separation(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
+  for (const ContactRegions& region : regions_) {
+    if (!region.inside().empty() || !region.middles().empty()) return false;
+  }
+  list_face_normals(members, true);
+  bool is_found = false;
+  for (const Direction& direction : directions_) {
+    const Vec3d normal{direction.normal[0], direction.normal[1], direction.normal[2]};
+    if ((is_found && !is_before(normal, curve.normal)) ||
+        !separates(direction.side, direction.triangle, members))
+      continue;
+    is_found = true;
+    curve.normal = normal;
+  }
+  return is_found;
+}
+
 /// Chooses the direction with the least depth.
 void CurveFinder::find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
   const std::array<SurfaceView, 2> surfaces{input_.a, input_.b};
@@ -429,7 +460,8 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
     for (const Vec3d& p : regions_[side].middles()) way_out_.add_probe(side, p);
   }
 
-  list_face_normals(members);
+  list_face_normals(members, false);
+  if (directions_.empty()) list_face_normals(members, true);
   candidates_.clear();
   for (const Direction& direction : directions_) {
     const Vec3d normal{direction.normal[0], direction.normal[1], direction.normal[2]};
@@ -452,6 +484,7 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
   const WayOut::Way way = way_out_.find(candidates_);
   curve.normal = way.normal;
   curve.depth = way.depth == WayOut::none ? 0 : restored(way.depth, scale);
+  visited_ += way_out_.triangle_count();
 }
 
 }  // namespace supple

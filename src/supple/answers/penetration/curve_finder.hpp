@@ -70,12 +70,14 @@ class CurveFinder {
   void turn_around(CurveKind kind);
   double turn_of_steps() const;
   void measure(std::span<const std::uint32_t> members, IntersectionCurve& curve);
-  void list_face_normals(std::span<const std::uint32_t> members);
+  void list_face_normals(std::span<const std::uint32_t> members, bool counts_touching);
   Vec3d direction_of_segments(std::span<const std::uint32_t> members) const;
   Vec3d mean_normal(std::span<const std::uint32_t> members) const;
   void link_regions();
   bool only_touches(std::uint32_t i) const;
+  bool separates(std::size_t side, std::uint32_t face, std::span<const std::uint32_t> members) const;
   double length_of(std::uint32_t i) const;
+  bool find_separation(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
 

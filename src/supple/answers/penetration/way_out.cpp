@@ -12,14 +12,6 @@ namespace {
 /// Depths within this ratio count as equal.
 constexpr double equal = 1 + 0x1p-36;
 
-/// The order of directions with equal depths: along x, then y, then z. It is the same in a mirror, and when a
-/// and b are exchanged.
-bool is_before(const Vec3d& p, const Vec3d& q) {
-  const auto rounded = [](double x) { return std::floor(std::fabs(x) * 0x1p20 + 0.5); };
-  return std::tuple(rounded(q.x), rounded(q.y), rounded(q.z)) <
-         std::tuple(rounded(p.x), rounded(p.y), rounded(p.z));
-}
-
 bool is_in_box(const Aabb& box, const Vec3d& p) {
   for (int axis = 0; axis < 3; ++axis) {
     if (p[axis] < double{box.min[axis]} || p[axis] > double{box.max[axis]}) return false;
@@ -28,6 +20,12 @@ bool is_in_box(const Aabb& box, const Vec3d& p) {
 }
 
 }  // namespace
+
+bool is_before(const Vec3d& p, const Vec3d& q) {
+  const auto rounded = [](double x) { return std::floor(std::fabs(x) * 0x1p20 + 0.5); };
+  return std::tuple(rounded(q.x), rounded(q.y), rounded(q.z)) <
+         std::tuple(rounded(p.x), rounded(p.y), rounded(p.z));
+}
 
 void WayOut::start(const Body& a, const Body& b) {
   bodies_ = {a, b};

@@ -13,6 +13,10 @@
 
 namespace supple {
 
+/// The order of directions with equal depths: along x, then y, then z. It is the same in a mirror, and when a
+/// and b are exchanged.
+bool is_before(const Vec3d& p, const Vec3d& q);
+
 /// A direction in which a may leave b.
 struct WayCandidate {
   Vec3d normal;
