@@ -2,9 +2,10 @@
 // ones at the speed of a release build.
 //
 // usage: TARGET FILE-OR-FOLDER...          runs the inputs
-//        TARGET --random SECONDS SEED [FILE-OR-FOLDER...]
+//        TARGET --random AMOUNT SEED [FILE-OR-FOLDER...]
 //                                          runs random inputs, and these inputs with changes; prints how
-//                                          many. Seed 0 is another one each time.
+//                                          many. AMOUNT is a number of inputs, or of seconds with an s: 60s.
+//                                          Seed 0 is another one each time.
 
 #include <algorithm>
 #include <chrono>
@@ -124,14 +125,17 @@ class RandomInputs {
   std::vector<Bytes> kept_;
 };
 
-std::uint64_t run_random(double seconds, RandomInputs inputs) {
+std::uint64_t run_random(const std::string& amount, RandomInputs inputs) {
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point end =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  const double number = std::atof(amount.c_str());
+  const bool is_time = amount.ends_with('s');
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(is_time ? number : 0));
   std::uint64_t count = 0;
-  for (; count % 16 != 0 || Clock::now() < end; ++count) {
+  while (is_time ? count % 16 != 0 || Clock::now() < end : static_cast<double>(count) < number) {
     current = inputs.next();
     run_input();
+    ++count;
   }
   return count;
 }
@@ -143,14 +147,14 @@ int main(int count, char** arguments) {
   std::signal(SIGSEGV, keep_input);
   const bool is_random = count > 3 && std::string(arguments[1]) == "--random";
   if (count < 2 || (!is_random && arguments[1][0] == '-')) {
-    std::fprintf(stderr, "usage: %s FILE-OR-FOLDER... | --random SECONDS SEED [FILE-OR-FOLDER...]\n",
+    std::fprintf(stderr, "usage: %s FILE-OR-FOLDER... | --random AMOUNT SEED [FILE-OR-FOLDER...]\n",
                  arguments[0]);
     return 2;
   }
   std::uint64_t executions = 0;
   if (is_random) {
     const std::uint64_t seed = std::strtoull(arguments[3], nullptr, 10);
-    executions = run_random(std::atof(arguments[2]),
+    executions = run_random(arguments[2],
                             {seed != 0 ? seed : std::random_device()(), read_all(arguments + 4, count - 4)});
   } else {
     for (Bytes& input : read_all(arguments + 1, count - 1)) {

@@ -2,7 +2,7 @@
 """Runs the fuzz targets of a build, each for some seconds on its corpus, and prints how many inputs they ran.
 
 The preset fuzz uses libFuzzer; every other build runs random inputs and changed inputs of the corpora at its own
-speed. Exits with 1 when a target fails; the input that made it fail is then in build/fuzz/failures.
+speed. With --rounds, a machine of any speed runs the same inputs. Exits with 1 when a target fails; the input that made it fail is then in build/fuzz/failures.
 """
 import argparse
 import csv
@@ -23,6 +23,9 @@ COLUMNS = ["date", "commit", "machine", "build", "target", "seconds", "execution
 GOALS = {"Loaders, parsers and commands": (10**9, ["obj", "off", "ply", "stl", "assimp", "volumes", "queries", "scene", "recording", "session", "packed"]),
          "Pairs of triangles and impacts": (10**9, ["triangles", "impacts"]),
          "Lives of scenes and broad phases": (10**8, ["scene_lives", "broad_phases"])}
+# About what takes a second with sanitizers.
+INPUTS_OF_A_ROUND = {"assimp": 100, "broad_phases": 400, "depths": 25, "impacts": 40, "recording": 70, "scene_lives": 8, "triangles": 1600}
+INPUTS_OF_A_ROUND_OF_OTHERS = 2000
 
 
 def cached(build, name):
@@ -48,9 +51,10 @@ def kept_inputs(name, build):
     return [path for path in (build / "fuzz" / "corpora" / name, FUZZ / "regressions" / name) if path.is_dir()]
 
 
-def command_of(name, program, build, seconds, seed):
+def command_of(name, program, build, seconds, rounds, seed):
     if not uses_libfuzzer(build):
-        return [program, "--random", seconds, seed, *kept_inputs(name, build)]
+        amount = rounds * INPUTS_OF_A_ROUND.get(name, INPUTS_OF_A_ROUND_OF_OTHERS) if rounds else f"{seconds}s"
+        return [program, "--random", amount, seed, *kept_inputs(name, build)]
     grown = build / "fuzz" / "grown" / name
     grown.mkdir(parents=True, exist_ok=True)
     command = [program, grown, *kept_inputs(name, build), f"-max_total_time={seconds}", f"-seed={seed}", "-timeout=300",
@@ -59,10 +63,10 @@ def command_of(name, program, build, seconds, seed):
     return command + ([f"-dict={dictionary}"] if dictionary.exists() else [])
 
 
-def run(name, program, build, seconds, seed):
+def run(name, program, build, seconds, rounds, seed):
     failures = build / "fuzz" / "failures" / name
     failures.mkdir(parents=True, exist_ok=True)
-    done = subprocess.run([str(part) for part in command_of(name, program, build, seconds, seed)], cwd=failures,
+    done = subprocess.run([str(part) for part in command_of(name, program, build, seconds, rounds, seed)], cwd=failures,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
     counted = re.search(r"number_of_executed_units: (\d+)|^(\d+) executions$", done.stdout, re.M)
     executions = int(counted.group(1) or counted.group(2)) if counted else 0
@@ -135,7 +139,8 @@ def main():
     parser.add_argument("targets", nargs="*", help="names of targets; default: all")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "fuzz", help="build folder (default: build/fuzz)")
     parser.add_argument("--seconds", type=int, default=30, help="time for each target (default: 30)")
-    parser.add_argument("--seed", type=int, default=0, help="of the random numbers; the same seed gives the same inputs, as far as the time allows (default: any)")
+    parser.add_argument("--rounds", type=int, default=0, help="fixed numbers of inputs instead of a time, about what a second allows with sanitizers; not with libFuzzer")
+    parser.add_argument("--seed", type=int, default=0, help="of the random numbers; the same seed gives the same inputs (default: any)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="targets at the same time (default: one per core)")
     parser.add_argument("--keep", action="store_true", help="minimise the grown corpora and write them to fuzz/corpora")
     parser.add_argument("--record", action="store_true", help="add the run to fuzz/results.csv and fuzz/results.md")
@@ -143,11 +148,13 @@ def main():
     build = arguments.build.resolve()
     if not (build / "CMakeCache.txt").exists():
         sys.exit(f"fuzz/run.py: {build} is no build folder; run: cmake --preset fuzz && cmake --build --preset fuzz")
+    if arguments.rounds < 0 or (arguments.rounds and (uses_libfuzzer(build) or arguments.record)):
+        parser.error("--rounds needs a number above 0 and a build without libFuzzer, and is not recorded")
     programs = programs_of(build, arguments.targets)
 
     counts, failed = {}, []
     with ThreadPoolExecutor(arguments.jobs) as pool:
-        for name, status, executions, output in pool.map(lambda item: run(*item, build, arguments.seconds, arguments.seed), programs.items()):
+        for name, status, executions, output in pool.map(lambda item: run(*item, build, arguments.seconds, arguments.rounds, arguments.seed), programs.items()):
             counts[name] = executions
             print(f"{name:14} {executions:12,} executions  {'ok' if status == 0 else 'FAILED'}", flush=True)
             if status != 0:
