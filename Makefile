@@ -22,7 +22,7 @@ help:
 	@echo 'make bench    Supple against Embree, CGAL, FCL, Bullet and ODE: up to 25 minutes; bench-quick takes one'
 	@echo 'make bench-kernels   single stages and kernels of Supple'
 	@echo 'make bench-compare BASE=COMMIT   this working tree against a commit'
-	@echo 'make check    format, include order, prose, changelog, file sizes, public interface, generated documents'
+	@echo 'make check    format, include order, prose, changelog, file sizes, budgets, public interface, generated documents'
 	@echo 'make format   format the C++ sources'
 	@echo 'make docs     write the documents that are generated from the command line and the headers'
 	@echo 'make paper    repeat the paper: every figure, its table and its claims, on one page; QUICK=1 takes five minutes'
@@ -111,6 +111,7 @@ check: experiment
 	tools/check_prose.py
 	tools/check_changelog.sh
 	tools/check_file_sizes.sh
+	tools/budgets.py
 	tools/make_api.py --check
 	tools/make_python.py --check
 	tools/check_api.py

@@ -7,7 +7,7 @@ function(supple_add_component name)
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/supple)
   target_link_libraries(supple_${name} PUBLIC supple PRIVATE $<BUILD_INTERFACE:supple_compile_options>)
-  supple_precompile_headers(supple_${name})
+  supple_compile_together(supple_${name})
   set_target_properties(supple_${name} PROPERTIES
     EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION} SOVERSION 0
     # A shared component finds the core beside it.

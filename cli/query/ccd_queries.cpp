@@ -82,9 +82,9 @@ std::optional<ContinuousDifference::Fault> fault_of(const std::optional<Impact>&
 }
 
 /// Answers the queries of one file and shows the progress.
-class Run {
+class CcdRun {
  public:
-  Run(const CcdQueriesOptions& options, Progress& progress) : options_(options), progress_(progress) {}
+  CcdRun(const CcdQueriesOptions& options, Progress& progress) : options_(options), progress_(progress) {}
 
   QueryFileResult of(const QueryPaths& paths);
 
@@ -97,7 +97,7 @@ class Run {
   std::uint64_t bytes_done_ = 0;
 };
 
-QueryFileResult Run::of(const QueryPaths& paths) {
+QueryFileResult CcdRun::of(const QueryPaths& paths) {
   QueryFileResult result;
   result.path = paths.queries.string();
   result.kind = options_.kind ? *options_.kind : kind_of(paths.queries);
@@ -114,7 +114,7 @@ QueryFileResult Run::of(const QueryPaths& paths) {
 }
 
 template <class Motion>
-void Run::answer(const std::vector<Motion>& queries, const QueryPaths& paths, QueryFileResult& result) {
+void CcdRun::answer(const std::vector<Motion>& queries, const QueryPaths& paths, QueryFileResult& result) {
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const std::optional<Impact> impact = first_impact(queries[i], options_.impact);
     result.times.push_back(impact ? std::optional(impact->toi) : std::nullopt);
@@ -144,7 +144,7 @@ int run_ccd_queries(const CcdQueriesOptions& options) {
   std::vector<QueryFileResult> results;
   {
     Progress progress(bytes, !options.quiet);
-    Run run(options, progress);
+    CcdRun run(options, progress);
     for (const QueryPaths& p : paths) {
       results.push_back(run.of(p));
       if (json) json->add(results.back());

@@ -239,14 +239,14 @@ std::vector<TrianglePairs> exact_pairs(const Replay& replay) {
   return all;
 }
 
-struct Cost {
+struct TrialCost {
   std::vector<double> seconds;  ///< of each round
   double vertices = 0, candidates = 0, contacts = 0, missed = 0;
   double triangles = 0, triangles_once = 0;  ///< read by the refit; those of all objects in pairs
 };
 
 template <class Find>
-void measure(const Replay& replay, const std::vector<TrianglePairs>& exact, Cost& cost, Find find) {
+void measure(const Replay& replay, const std::vector<TrianglePairs>& exact, TrialCost& cost, Find find) {
   double seconds = 0;
   const bool is_first = cost.seconds.empty();
   for (std::size_t f = 0; f < replay.frames.size(); ++f) {
@@ -273,11 +273,11 @@ std::size_t triangles_in_pairs(const Replay& replay, const Replay::Frame& frame)
 constexpr std::array trial_names{"the hierarchy", "neighbours of a vertex", "regions of the scene octree",
                                  "the common region"};
 
-std::array<Cost, 4> measure_all(const Replay& replay, int rounds, Work& work) {
+std::array<TrialCost, 4> measure_all(const Replay& replay, int rounds, Work& work) {
   const std::vector<TrianglePairs> exact = exact_pairs(replay);
   const RootCube root = cube_around((*replay.border)[0], (*replay.border)[1]);
   const std::vector<Box> regions = regions_of_level(root, 2);
-  std::array<Cost, 4> costs;
+  std::array<TrialCost, 4> costs;
   for (int round = 0; round < rounds; ++round) {
     Hierarchy hierarchy(replay);
     double seconds = 0;
@@ -382,7 +382,7 @@ Report run_trials(const TrialOptions& options, bool show_progress) {
   Work work(scenes.size() * static_cast<std::uint64_t>(options.rounds), show_progress);
   for (const Table1Scene& scene : scenes) {
     const Replay replay = replay_of(scene, options.seed, options.frames, 5);
-    const std::array<Cost, 4> costs = measure_all(replay, options.rounds, work);
+    const std::array<TrialCost, 4> costs = measure_all(replay, options.rounds, work);
     const auto frames = static_cast<double>(replay.frames.size());
     for (std::size_t i = 0; i < costs.size(); ++i) {
       const Estimate times = ratio_of(costs[i].seconds, costs[0].seconds);

@@ -62,13 +62,6 @@ struct Sum {
   CollidingChildren colliding{};  ///< with leaves of one triangle
 };
 
-double mean_depth(const OctreeStatistics& octree) {
-  double sum = 0;
-  for (std::size_t level = 0; level < octree.leaves_by_level.size(); ++level)
-    sum += static_cast<double>(level) * static_cast<double>(octree.leaves_by_level[level]);
-  return octree.leaves == 0 ? 0 : sum / static_cast<double>(octree.leaves);
-}
-
 Sum measure(const Case& poses, std::uint32_t arity, std::uint32_t leaf_size, const ArityOptions& options) {
   Sum sum;
   for (const TriangleMesh& b : poses.b) {
@@ -357,6 +350,13 @@ Table scene_table() {
 }
 
 }  // namespace
+
+double mean_depth(const OctreeStatistics& octree) {
+  double sum = 0;
+  for (std::size_t level = 0; level < octree.leaves_by_level.size(); ++level)
+    sum += static_cast<double>(level) * static_cast<double>(octree.leaves_by_level[level]);
+  return octree.leaves == 0 ? 0 : sum / static_cast<double>(octree.leaves);
+}
 
 ArityOptions arity_options(bool quick) {
   ArityOptions options;

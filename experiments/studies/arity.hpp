@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "report.hpp"
+#include "supple/inspection.hpp"
 #include "work.hpp"
 
 namespace supple::experiments {
@@ -20,6 +21,9 @@ struct ArityOptions {
 };
 
 ArityOptions arity_options(bool quick);
+
+/// Of the leaves; 0 without leaves.
+double mean_depth(const OctreeStatistics& octree);
 
 /// Trees of two, four and eight children, of objects and of the scene.
 Report run_arity(const ArityOptions& options, bool show_progress);

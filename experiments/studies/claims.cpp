@@ -13,6 +13,7 @@
 #include "base/text.hpp"
 #include "fit.hpp"
 #include "judgement.hpp"
+#include "studies/arity.hpp"
 #include "studies/box_field.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/inspection.hpp"
@@ -155,13 +156,6 @@ Table depth_table(const std::string& name, const std::string& caption) {
            {"size", "Object size / triangle size"},
            {"depth", "Depth"},
            {"mean_depth", "mean"}}};
-}
-
-double mean_depth(const OctreeStatistics& octree) {
-  double sum = 0;
-  for (std::size_t level = 0; level < octree.leaves_by_level.size(); ++level)
-    sum += static_cast<double>(level) * static_cast<double>(octree.leaves_by_level[level]);
-  return sum / static_cast<double>(octree.leaves);
 }
 
 /// How the mean depth grows from each mesh to the next.

@@ -24,36 +24,37 @@ namespace supple::experiments {
 namespace {
 
 /// Objects and their positions in each frame.
-struct Case {
+struct Poses {
   std::string name;
   std::vector<TriangleMesh> objects;
   std::vector<std::vector<std::vector<Vec3d>>> frames{};  // frame, object, vertex
 };
 
 /// Two objects in three poses relative to each other.
-Case poses_of(const std::string& name, const TriangleMesh& a, const TriangleMesh& b,
-              const std::vector<Vec3d>& offsets) {
-  Case result{name, {a, turned(b)}};
+Poses poses_of(const std::string& name, const TriangleMesh& a, const TriangleMesh& b,
+               const std::vector<Vec3d>& offsets) {
+  Poses result{name, {a, turned(b)}};
   for (const Vec3d& offset : offsets)
     result.frames.push_back({a.positions, moved(result.objects[1], offset).positions});
   return result;
 }
 
 /// Every tenth step of a scene.
-Case deforming(const Table1Scene& scene, const VolumesOptions& options) {
+Poses deforming(const Table1Scene& scene, const VolumesOptions& options) {
   Replay replay = replay_of(scene, options.seed, options.deformed_frames, 10);
-  Case result{replay.name + ", deforming", std::move(replay.objects)};
+  Poses result{replay.name + ", deforming", std::move(replay.objects)};
   for (Replay::Frame& frame : replay.frames) result.frames.push_back(std::move(frame.positions));
   return result;
 }
 
-std::vector<Case> make_cases(const VolumesOptions& options) {
+std::vector<Poses> make_cases(const VolumesOptions& options) {
   const std::vector<Vec3d> offsets{{0.1, 0.05, 0.1}, {0.3, 0.1, 0.05}, {0.55, 0.15, 0.1}};
   const TriangleMesh ball = make_icosphere(options.frequency);
-  std::vector<Case> cases{poses_of("pawn, fish", make_model("pawn"), make_model("fish"), offsets),
-                          poses_of("rabbits", make_model("rabbit"), make_model("rabbit"), offsets),
-                          poses_of("humans", make_model("human"), make_model("human"), offsets),
-                          poses_of("balls", ball, ball, {{0.25, 0, 0}, {1, 0.125, 0.0625}, {1.75, 0.25, 0}})};
+  std::vector<Poses> cases{
+      poses_of("pawn, fish", make_model("pawn"), make_model("fish"), offsets),
+      poses_of("rabbits", make_model("rabbit"), make_model("rabbit"), offsets),
+      poses_of("humans", make_model("human"), make_model("human"), offsets),
+      poses_of("balls", ball, ball, {{0.25, 0, 0}, {1, 0.125, 0.0625}, {1.75, 0.25, 0}})};
   if (options.with_bikes) cases.push_back(poses_of("bikes", make_model("bike"), make_model("bike"), offsets));
   cases.push_back(deforming(mixed_scene(9), options));
   cases.push_back(deforming({Table1Scene::Source::built_in, "three_humans"}, options));
@@ -106,14 +107,14 @@ struct Cost {
   double seconds() const { return refit_seconds + query_seconds; }
 };
 
-std::vector<ObjectId> add_all(Scene& scene, const Case& shapes, const Variant& variant) {
+std::vector<ObjectId> add_all(Scene& scene, const Poses& shapes, const Variant& variant) {
   std::vector<ObjectId> ids;
   for (const TriangleMesh& mesh : shapes.objects)
     ids.push_back(scene.add(mesh, ObjectOptions{.octree = variant.octree}));
   return ids;
 }
 
-Cost measure(const Case& shapes, const Variant& variant, const VolumesOptions& options) {
+Cost measure(const Poses& shapes, const Variant& variant, const VolumesOptions& options) {
   const SceneOptions scene_options{.bounding_volume = variant.volume,
                                    .contact_points = false,
                                    .threads = options.threads,
@@ -169,10 +170,10 @@ Table cost_table(const std::string& name, const std::string& caption, const std:
            {"contacts", "Contacts"}}};
 }
 
-Costs measure_all(const std::vector<Case>& cases, const std::vector<Variant>& variants,
+Costs measure_all(const std::vector<Poses>& cases, const std::vector<Variant>& variants,
                   const VolumesOptions& options, Work& work, Table& table) {
   Costs costs;
-  for (const Case& shapes : cases) {
+  for (const Poses& shapes : cases) {
     auto& row = costs.emplace_back();
     for (const Variant& variant : variants) {
       const Cost& cost = row.emplace_back(measure(shapes, variant, options));
@@ -262,7 +263,7 @@ Claim judge_several_spheres(const std::vector<Variant>& variants, const Costs& c
 }
 
 /// When a variant pays: how many queries for one refit make up for its slower refit.
-std::string when_it_pays(const std::vector<Case>& cases, const Costs& costs, std::size_t variant) {
+std::string when_it_pays(const std::vector<Poses>& cases, const Costs& costs, std::size_t variant) {
   std::vector<std::string> pays, later;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Cost &boxes = costs[i][0], &cost = costs[i][variant];
@@ -281,7 +282,7 @@ std::string when_it_pays(const std::vector<Case>& cases, const Costs& costs, std
 }
 
 Table summary_table(const std::string& name, const std::string& caption, const std::vector<Variant>& variants,
-                    const std::vector<Case>& cases, const Costs& costs) {
+                    const std::vector<Poses>& cases, const Costs& costs) {
   Table table{name,
               caption,
               {{"variant", "Variant"},
@@ -307,7 +308,7 @@ Table summary_table(const std::string& name, const std::string& caption, const s
   return table;
 }
 
-Section section_of(const std::string& heading, const std::string& measure, const std::vector<Case>& cases,
+Section section_of(const std::string& heading, const std::string& measure, const std::vector<Poses>& cases,
                    const std::vector<Variant>& variants, const Costs& costs, Table all,
                    const std::string& name) {
   Table summary = summary_table(
@@ -330,7 +331,7 @@ VolumesOptions volumes_options(bool quick) {
 }
 
 Report run_volumes(const VolumesOptions& options, bool show_progress) {
-  const std::vector<Case> cases = make_cases(options);
+  const std::vector<Poses> cases = make_cases(options);
   const std::vector<Variant> volumes = volume_variants(), builds = build_variants();
   Work work(cases.size() * (volumes.size() + builds.size()), show_progress);
   Table volume_costs = cost_table("volumes", "Bounding volumes", "volume");

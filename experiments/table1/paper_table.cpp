@@ -8,10 +8,10 @@
 namespace supple::experiments {
 namespace {
 
-constexpr double run_seconds = 600;
+constexpr double printed_run_seconds = 600;
 
 // The numbers of the text are in section 7: 12.4 collisions, one every 48.38 seconds, and so on.
-constexpr std::array<PaperRow, 6> rows{
+constexpr std::array<PaperRow, 6> printed_rows{
     PaperRow{3, BoundingVolume::aabb, {18, 35, 32, 17, 21}, {14, 22, 18, 10, 9}, 24.39, 41.09},
     PaperRow{3, BoundingVolume::sphere, {12, 18, 10, 15, 7}, {7, 8, 7, 4, 5}, 48.38, 96.77},
     PaperRow{6, BoundingVolume::aabb, {85, 69, 53, 43, 45}, {51, 45, 37, 29, 29}, 10.16, 15.70},
@@ -28,14 +28,14 @@ std::string compared(double computed, double text) {
 }  // namespace
 
 std::span<const PaperRow> paper_rows() {
-  return rows;
+  return printed_rows;
 }
 
 const PaperRow* paper_row(std::uint32_t objects, BoundingVolume volume) {
-  const auto found = std::find_if(rows.begin(), rows.end(), [&](const PaperRow& row) {
+  const auto found = std::find_if(printed_rows.begin(), printed_rows.end(), [&](const PaperRow& row) {
     return row.objects == objects && row.volume == volume;
   });
-  return found == rows.end() ? nullptr : &*found;
+  return found == printed_rows.end() ? nullptr : &*found;
 }
 
 std::optional<Estimate> paper_ratio(std::uint64_t objects, bool is_broad) {
@@ -54,7 +54,7 @@ double mean(std::span<const double> values) {
 }
 
 double seconds_per_collision(std::span<const double> counts) {
-  return run_seconds / mean(counts);
+  return printed_run_seconds / mean(counts);
 }
 
 Table paper_arithmetic() {
@@ -67,7 +67,7 @@ Table paper_arithmetic() {
                {"seconds_per_collision", "Seconds per collision", 5},
                {"text_seconds", "in the text", 4},
                {"comparison", "Comparison"}}};
-  for (const PaperRow& row : rows) {
+  for (const PaperRow& row : printed_rows) {
     for (const bool broad : {true, false}) {
       const auto& counts = broad ? row.broad : row.narrow;
       const double text = broad ? row.text_seconds_broad : row.text_seconds_narrow;

@@ -26,7 +26,7 @@ struct Placement {
   Transform transform = identity_transform;
 };
 
-struct Object {
+struct ThreeMfObject {
   std::vector<Vec3d> positions;
   std::vector<Triangle> triangles;
   std::vector<Placement> components;
@@ -35,7 +35,7 @@ struct Object {
 
 struct Model {
   std::string unit;
-  std::map<std::string, Object> objects;
+  std::map<std::string, ThreeMfObject> objects;
   std::vector<Placement> items;
 };
 
@@ -104,11 +104,11 @@ class ModelReader {
     }
   }
 
-  Object read_object(const pugi::xml_node& node) const {
+  ThreeMfObject read_object(const pugi::xml_node& node) const {
     if (attribute(node, "meshresolution") == "lowres")
       fail_here(node,
                 "the shape of the object is in its slices, which are not supported; export its full mesh");
-    Object object;
+    ThreeMfObject object;
     const pugi::xml_node mesh = child(node, "mesh");
     for (const pugi::xml_node& vertex : child(mesh, "vertices").children()) {
       if (name_of(vertex) == "vertex") object.positions.push_back(read_vertex(vertex));
@@ -135,7 +135,7 @@ class ModelReader {
     return position;
   }
 
-  Triangle read_triangle(const pugi::xml_node& node, const Object& object) const {
+  Triangle read_triangle(const pugi::xml_node& node, const ThreeMfObject& object) const {
     constexpr const char* names[] = {"v1", "v2", "v3"};
     Triangle triangle;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -267,7 +267,7 @@ class ThreeMfReader {
          "; it may be micron, millimeter, centimeter, inch, foot or meter");
   }
 
-  Object& object_of(const Placement& placement) {
+  ThreeMfObject& object_of(const Placement& placement) {
     Model& model = model_in(placement.part);
     if (metres_of(model.unit) != result_.frame.unit)
       fail(file_ + ": part " + in_quotes(placement.part) +
@@ -285,7 +285,7 @@ class ThreeMfReader {
     if (depth > deepest)
       fail(file_ + ": object " + in_quotes(placement.object) + " is nested more than " +
            std::to_string(deepest) + " deep; does it contain itself?");
-    Object& object = object_of(placement);
+    ThreeMfObject& object = object_of(placement);
     if (object.size != 0) return object.size;
     std::uint64_t size = 1 + object.positions.size() + object.triangles.size();
     for (const Placement& component : object.components)
@@ -294,14 +294,14 @@ class ThreeMfReader {
   }
 
   void append(const Placement& placement, const Transform& to_scene) {
-    const Object& object = object_of(placement);
+    const ThreeMfObject& object = object_of(placement);
     const Transform transform =
         to_scene == identity_transform ? placement.transform : to_scene * placement.transform;
     append(object, transform);
     for (const Placement& component : object.components) append(component, transform);
   }
 
-  void append(const Object& object, const Transform& transform) {
+  void append(const ThreeMfObject& object, const Transform& transform) {
     TriangleMesh& mesh = result_.mesh;
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (const Vec3d& position : object.positions) mesh.positions.push_back(apply(transform, position));

@@ -67,7 +67,7 @@ void run_safe_step(fuzz::ByteReader& bytes) {
   fuzz::CoordinateReader coordinate(bytes);
   const std::uint32_t kind = bytes.below(5);
   const std::size_t count_a = kind < 2 ? 2 : 1, count_b = kind < 2 ? 2 : kind < 4 ? 3 : 1;
-  testing::TwoElements elements;
+  truth::TwoElements elements;
   const std::uint8_t still = bytes.byte();  // bits of the vertices that rest
   const bool is_rigid = bytes.below(4) == 0;
   double size = 0;
@@ -90,17 +90,17 @@ void run_safe_step(fuzz::ByteReader& bytes) {
   double separation = bytes.below(2) == 0 ? std::abs(coordinate()) : 0;
   if (bytes.below(4) == 0) separation *= static_cast<double>(bytes.byte()) / 255;
   if (!coordinate.is_small() || !(size < 0x1p20)) return;
-  const std::vector<testing::MovingPair> pairs = elements.pairs();
+  const std::vector<truth::MovingPair> pairs = elements.pairs();
   const SafeStep found = elements.scene(separation).collision_free_step({.keep = keep});
   check(found.limit.has_value() == (found.step < 1), "a step has no limit");
   if (touch_at_start(pairs)) return;
-  const testing::StepFault fault = check_step(pairs, separation, keep, found.step, bytes.below(8) == 0);
-  check(fault != testing::StepFault::too_long, "the safe step is too long");
+  const truth::StepFault fault = check_step(pairs, separation, keep, found.step, bytes.below(8) == 0);
+  check(fault != truth::StepFault::too_long, "the safe step is too long");
   // Where elements are so near that rounding could make them touch, the step is shorter.
-  const bool is_near = std::ranges::any_of(pairs, [&](const testing::MovingPair& pair) {
-    return testing::KeptSquare(pair, separation, keep).rounded() <= 0x1p-44 * size;
+  const bool is_near = std::ranges::any_of(pairs, [&](const truth::MovingPair& pair) {
+    return truth::KeptSquare(pair, separation, keep).rounded() <= 0x1p-44 * size;
   });
-  check(is_near || fault == testing::StepFault::none, "the safe step is too short");
+  check(is_near || fault == truth::StepFault::none, "the safe step is too short");
 }
 
 }  // namespace

@@ -10,8 +10,7 @@
 #include "steady_state/allocation_count.hpp"
 #include "support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::layers_test {
 
 using Json = nlohmann::json;
 
@@ -82,5 +81,4 @@ TEST(OutOfMemory, AFrameWithoutLayersThatFailsEndsTheSession) {
   EXPECT_TRUE(page.session.ended());
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::layers_test

@@ -17,8 +17,7 @@
 #include "supple/recording.hpp"
 #include "supple/scene.hpp"
 
-namespace supple {
-namespace {
+namespace supple::recording_test {
 
 namespace fs = std::filesystem;
 
@@ -127,5 +126,4 @@ TEST(RecordingOutOfMemory, ReadingCanBeRepeated) {
   });
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::recording_test

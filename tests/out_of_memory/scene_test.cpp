@@ -20,8 +20,7 @@
 #include "supple/scene.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::scene_test {
 
 /// The numbers of results, so that those of two scenes can be compared.
 class Digest {
@@ -434,5 +433,4 @@ TEST(SceneOutOfMemory, AFailedChangeHasNoEffect) {
   });
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::scene_test

@@ -13,8 +13,7 @@
 #include "every_allocation.hpp"
 #include "support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_test {
 
 const char* const commands[] = {
     R"({"do": "speed", "factor": 0})",
@@ -88,5 +87,4 @@ TEST(SessionOutOfMemory, ReportsOrThrows) {
   EXPECT_GT(reports, 0);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_test

@@ -9,8 +9,7 @@
 #include "supple/models.hpp"
 #include "supple/simulation.hpp"
 
-namespace supple {
-namespace {
+namespace supple::simulation_test {
 
 TriangleMesh ball(Vec3d at) {
   TriangleMesh mesh = make_icosphere(2);
@@ -81,5 +80,4 @@ TEST(SimulationOutOfMemory, CanBeDestroyedWithAResponse) {
                    Integrator::verlet);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::simulation_test

@@ -12,7 +12,7 @@
 
 // The distance that elements keep in a safe step, and whether a step keeps it, in rational arithmetic.
 
-namespace supple::testing {
+namespace supple::truth {
 
 /// A vertex and a face, or two edges; an edge or a point is a face with the last vertex repeated.
 struct MovingPair {
@@ -138,4 +138,4 @@ inline bool touch_at_start(const std::vector<MovingPair>& pairs) {
   return false;
 }
 
-}  // namespace supple::testing
+}  // namespace supple::truth

@@ -12,8 +12,6 @@
 namespace supple::viewer {
 namespace {
 
-constexpr std::int64_t largest_id = std::numeric_limits<std::uint32_t>::max();
-
 std::string number_text(double value) {
   JsonText json;
   json.value(value);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@
 #include "supple/types.hpp"
 
 namespace supple::viewer {
+
+/// Of an object, a vertex or a triangle.
+constexpr std::int64_t largest_id = std::numeric_limits<std::uint32_t>::max();
 
 /// Reads the members of a command. Keeps the first error as a message for the user; values returned after an
 /// error have no meaning. A missing optional member is not an error.

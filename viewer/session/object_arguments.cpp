@@ -1,13 +1,10 @@
 #include "object_arguments.hpp"
 
 #include <cstddef>
-#include <limits>
 #include <string>
 
 namespace supple::viewer {
 namespace {
-
-constexpr std::int64_t largest_id = std::numeric_limits<std::uint32_t>::max();
 
 /// Whether an object has a vertex or triangle, of which it has `count`.
 bool has(const char* what, std::uint32_t number, std::size_t count, std::uint32_t object,

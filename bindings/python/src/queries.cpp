@@ -10,7 +10,7 @@ namespace {
 using Together = CallGuard::Together;
 using Points = Matrix<double, 3>;
 using Rays = Matrix<double, 6>;
-using Spheres = Matrix<double, 4>;
+using SphereRows = Matrix<double, 4>;
 
 QueryFilter filter_with(const std::optional<ObjectId>& object, std::uint32_t mask) {
   return {object, mask};
@@ -110,7 +110,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       nb::arg(), object(), nb::arg(), object());
   scene.def(
       "overlaps_spheres",
-      [](SceneCore& core, const Spheres& spheres, std::optional<ObjectId> only, std::uint32_t mask,
+      [](SceneCore& core, const SphereRows& spheres, std::optional<ObjectId> only, std::uint32_t mask,
          Stop* stop) {
         return to_table(run_query(core, "overlaps_spheres", stop, [&](const CallLimits& limits) {
           return core.scene().overlaps(rows_of<QuerySphere>(spheres), filter_with(only, mask), limits);
@@ -197,7 +197,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       nb::arg(), nb::arg(), object(), nb::arg());
   scene.def(
       "verify_overlaps_spheres",
-      [](SceneCore& core, const Spheres& spheres, const List<std::uint8_t>& found,
+      [](SceneCore& core, const SphereRows& spheres, const List<std::uint8_t>& found,
          std::optional<ObjectId> only, std::uint32_t mask) {
         return verify_query(core, [&](const Scene& s) {
           return s.verify_overlaps(rows_of<QuerySphere>(spheres), records_of<Overlap>(found),

@@ -20,17 +20,17 @@ void add_volumes(const SpringNetwork& network, std::span<const VertexKind> kinds
     for (const std::uint32_t v : t) gradient[v] = gradient[v] + third;
   }
   // A vertex belongs to at most one part.
-  constexpr std::uint32_t none = ~std::uint32_t{0};
-  std::vector<std::uint32_t> part_of(kinds.size(), none);
+  constexpr std::uint32_t no_part = ~std::uint32_t{0};
+  std::vector<std::uint32_t> part_of(kinds.size(), no_part);
   for (const VolumeElement& element : network.volumes.elements) {
     for (const std::uint32_t v : element.corners) part_of[v] = element.part;
   }
   std::vector<double> sums(network.parts.size());
   for (std::size_t v = 0; v < kinds.size(); ++v) {
-    if (part_of[v] != none && kinds[v] == VertexKind::free) sums[part_of[v]] += norm(gradient[v]);
+    if (part_of[v] != no_part && kinds[v] == VertexKind::free) sums[part_of[v]] += norm(gradient[v]);
   }
   for (std::size_t v = 0; v < kinds.size(); ++v) {
-    if (part_of[v] == none) continue;
+    if (part_of[v] == no_part) continue;
     stiffness[v] +=
         volume_stiffness * network.parts[part_of[v]].inverse_scale * norm(gradient[v]) * sums[part_of[v]];
   }

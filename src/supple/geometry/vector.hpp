@@ -10,6 +10,9 @@ namespace supple {
 inline bool is_finite(const Vec3d& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
+inline Vec3d in_double(const Vec3f& v) {
+  return {v.x, v.y, v.z};
+}
 inline Vec3d absolute(const Vec3d& v) {
   return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
 }

@@ -20,23 +20,24 @@ namespace {
 
 constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
 
-constexpr std::size_t grain = 4096;  // triangles
+constexpr std::size_t triangles_of_a_task = 4096;  // triangles
 
 std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const Triangle> triangles,
                                const Parallel& parallel) {
   std::vector<Vec3d> centers(triangles.size());
-  parallel.for_ranges(triangles.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const Vec3d p = positions[triangles[t][0]], q = positions[triangles[t][1]],
-                  r = positions[triangles[t][2]];
-      for (int axis = 0; axis < 3; ++axis) {
-        const double low = std::min(std::min(p[axis], q[axis]), r[axis]);
-        const double high = std::max(std::max(p[axis], q[axis]), r[axis]);
-        // A minimum can lose a NaN; the sum keeps it.
-        centers[t][axis] = low / 2 + high / 2 + (p[axis] * 0 + q[axis] * 0 + r[axis] * 0);
-      }
-    }
-  });
+  parallel.for_ranges(triangles.size(), triangles_of_a_task,
+                      [&](std::size_t begin, std::size_t end, std::uint32_t) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                          const Vec3d p = positions[triangles[t][0]], q = positions[triangles[t][1]],
+                                      r = positions[triangles[t][2]];
+                          for (int axis = 0; axis < 3; ++axis) {
+                            const double low = std::min(std::min(p[axis], q[axis]), r[axis]);
+                            const double high = std::max(std::max(p[axis], q[axis]), r[axis]);
+                            // A minimum can lose a NaN; the sum keeps it.
+                            centers[t][axis] = low / 2 + high / 2 + (p[axis] * 0 + q[axis] * 0 + r[axis] * 0);
+                          }
+                        }
+                      });
   return centers;
 }
 
@@ -95,12 +96,13 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   volumes_ = NodeVolumes(bounding_volume, nodes_.size());
   triangles_.resize(triangles.size());
   triangle_order_.resize(triangles.size());
-  parallel.for_ranges(triangles.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-    for (std::size_t t = begin; t < end; ++t) {
-      triangles_[t] = triangles[triangle_ids_[t]];
-      triangle_order_[triangle_ids_[t]] = static_cast<std::uint32_t>(t);
-    }
-  });
+  parallel.for_ranges(triangles.size(), triangles_of_a_task,
+                      [&](std::size_t begin, std::size_t end, std::uint32_t) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                          triangles_[t] = triangles[triangle_ids_[t]];
+                          triangle_order_[triangle_ids_[t]] = static_cast<std::uint32_t>(t);
+                        }
+                      });
   list_leaf_vertices(parallel);
 }
 

@@ -42,11 +42,11 @@ std::vector<Side> sorted_sides(std::span<const Triangle> triangles, std::uint32_
 }  // namespace
 
 void SurfaceElements::number_by_first_use(const ObjectOctree& octree) {
-  constexpr std::uint32_t unnumbered = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> numbers(octree.vertex_count(), unnumbered);
+  constexpr std::uint32_t without_number = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> numbers(octree.vertex_count(), without_number);
   vertex_ids_.reserve(octree.vertex_count());
   const auto number = [&](std::uint32_t vertex) {
-    if (numbers[vertex] == unnumbered) {
+    if (numbers[vertex] == without_number) {
       numbers[vertex] = static_cast<std::uint32_t>(vertex_ids_.size());
       vertex_ids_.push_back(vertex);
     }

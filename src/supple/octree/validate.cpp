@@ -109,8 +109,8 @@ class Validation {
   static bool in_slab(const Slab& slab, Vec3d p) {
     const Vec3d d{slab.direction.x, slab.direction.y, slab.direction.z};
     const double along = dot(d, p);
-    const double rounding = 0x1p-50 * dot(absolute(d), absolute(p));
-    return !(along < slab.low - rounding || along > slab.high + rounding);
+    const double error = 0x1p-50 * dot(absolute(d), absolute(p));
+    return !(along < slab.low - error || along > slab.high + error);
   }
 
   const ObjectOctree& octree_;

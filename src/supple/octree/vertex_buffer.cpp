@@ -6,7 +6,7 @@
 namespace supple {
 namespace {
 
-constexpr std::size_t grain = 16384;
+constexpr std::size_t vertices_of_a_task = 16384;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void VertexBuffer::resize(std::size_t count, bool is_double) {
 template <class Scalar>
 void VertexBuffer::copy(const PositionsView& positions, const Parallel& parallel) {
   Scalar* const target = storage(Scalar{}).data();
-  parallel.for_ranges(count_, grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+  parallel.for_ranges(count_, vertices_of_a_task, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3<Scalar> p = positions.get<Scalar>(i);
       target[3 * i] = p.x;
@@ -68,9 +68,10 @@ void VertexBuffer::gather(const VertexBuffer& source, std::span<const std::uint3
   assert(&source != this);
   resize(ids.size(), source.is_double_);
   const auto copy = [&](const auto& from, auto* to) {
-    parallel.for_ranges(ids.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
-      for (std::size_t v = begin; v < end; ++v) std::copy_n(from[ids[v]], 3, to + 3 * v);
-    });
+    parallel.for_ranges(ids.size(), vertices_of_a_task,
+                        [&](std::size_t begin, std::size_t end, std::uint32_t) {
+                          for (std::size_t v = begin; v < end; ++v) std::copy_n(from[ids[v]], 3, to + 3 * v);
+                        });
   };
   if (is_double_) {
     copy(source.doubles(), doubles_.data());

@@ -5,10 +5,10 @@
 #include <optional>
 #include <set>
 
-#include "contact/distance/distance_algebra.hpp"
 #include "mesh/share_vertex.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "verify/brute_force_elements.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple {
 namespace {

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple {
 namespace {

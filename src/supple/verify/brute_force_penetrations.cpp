@@ -133,7 +133,7 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
 
 namespace {
 
-using Edge = std::array<std::uint32_t, 2>;
+using VertexPair = std::array<std::uint32_t, 2>;
 constexpr std::uint32_t no_curve = ~std::uint32_t{0}, several_curves = no_curve - 1;
 
 /// For each vertex inside the other object the number of the only curve around it and those that edges
@@ -142,7 +142,7 @@ std::vector<std::uint32_t> curves_around(const CurveSideTruth& truth, std::size_
                                          std::span<const IntersectionCurve> curves,
                                          const DetectResult& result) {
   const PlainObject& object = *truth.object;
-  std::vector<std::pair<Edge, std::uint32_t>> crossed;  // edges, or vertices as {v, v}, and curves
+  std::vector<std::pair<VertexPair, std::uint32_t>> crossed;  // edges, or vertices as {v, v}, and curves
   for (std::uint32_t c = 0; c < curves.size(); ++c) {
     for (const std::uint32_t i : result.contacts_of(curves[c])) {
       const Contact& contact = result.contacts[i];
@@ -156,13 +156,13 @@ std::vector<std::uint32_t> curves_around(const CurveSideTruth& truth, std::size_
       bool used_exact = false;
       if (find_projection(object.positions[v], object.positions[w], object.positions[x], used_exact))
         continue;
-      for (const auto& [p, q] : {Edge{v, w}, Edge{w, x}, Edge{v, x}})
+      for (const auto& [p, q] : {VertexPair{v, w}, VertexPair{w, x}, VertexPair{v, x}})
         crossed.push_back({{std::min(p, q), std::max(p, q)}, c});
     }
   }
   sort_once(crossed);
   const auto crossings_of = [&](std::uint32_t v, std::uint32_t w) {
-    return std::ranges::equal_range(crossed, Edge{std::min(v, w), std::max(v, w)}, {},
+    return std::ranges::equal_range(crossed, VertexPair{std::min(v, w), std::max(v, w)}, {},
                                     [](const auto& crossing) { return crossing.first; });
   };
   std::vector<std::uint8_t> is_inside(object.positions.size());
@@ -170,7 +170,8 @@ std::vector<std::uint32_t> curves_around(const CurveSideTruth& truth, std::size_
   VertexSets sets(object.positions.size());
   const auto for_each_edge = [&](const auto& visit) {
     for (const Triangle& triangle : object.triangles) {
-      for (const auto& [i, k] : {Edge{0, 1}, Edge{1, 0}, Edge{1, 2}, Edge{2, 1}, Edge{2, 0}, Edge{0, 2}}) {
+      for (const auto& [i, k] : {VertexPair{0, 1}, VertexPair{1, 0}, VertexPair{1, 2}, VertexPair{2, 1},
+                                 VertexPair{2, 0}, VertexPair{0, 2}}) {
         if (is_inside[triangle[i]] != 0) visit(triangle[i], triangle[k]);
       }
     }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "core/parallel.hpp"
 #include "supple/proximity.hpp"
 #include "supple/result.hpp"

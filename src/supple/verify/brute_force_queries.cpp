@@ -247,7 +247,7 @@ PlainMovingObject finite_elements(const PlainObject& object) {
   return plain;
 }
 
-auto place_of(const NearElements& near) {
+auto key_of(const NearElements& near) {
   return std::tie(near.squared, near.kind_a, near.kind_b, near.element_a, near.element_b);
 }
 
@@ -265,7 +265,7 @@ std::optional<ExactPair> nearest_pair_by_brute_force(const PlainObject& a, const
     const auto found = find_proximity_by_brute_force(of_a, of_b, false, reach, ProximityListing::features,
                                                      ElementKinds::all, parallel);
     const auto least = std::ranges::min_element(
-        found.near, [](const NearElements& p, const NearElements& q) { return place_of(p) < place_of(q); });
+        found.near, [](const NearElements& p, const NearElements& q) { return key_of(p) < key_of(q); });
     return least != found.near.end() ? std::optional(ExactPair{{}, *least}) : std::nullopt;
   };
   const double bound = std::min(max_distance, bound_of_distance(surface_a, surface_b));

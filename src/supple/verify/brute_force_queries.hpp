@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "core/parallel.hpp"
 #include "supple/queries.hpp"
 #include "supple/triangle_intersection.hpp"

@@ -14,8 +14,8 @@
 namespace supple {
 namespace {
 
-using Integer = boost::multiprecision::cpp_int;
-using IntegerVector = std::array<Integer, 3>;
+using BigInteger = boost::multiprecision::cpp_int;
+using IntegerVector = std::array<BigInteger, 3>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -37,7 +37,7 @@ struct OddMantissa {
 IntegerVector difference(const IntegerVector& p, const IntegerVector& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
-Integer dot_of(const IntegerVector& p, const IntegerVector& q) {
+BigInteger dot_of(const IntegerVector& p, const IntegerVector& q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 IntegerVector cross_of(const IntegerVector& p, const IntegerVector& q) {
@@ -59,7 +59,7 @@ struct IntegerCorners {
     for (std::size_t i = 0; i < 4; ++i) {
       for (int axis = 0; axis < 3; ++axis) {
         const OddMantissa value(all[i][axis]);
-        Integer& number = points[i][static_cast<std::size_t>(axis)];
+        BigInteger& number = points[i][static_cast<std::size_t>(axis)];
         number = value.mantissa;
         if (value.mantissa != 0) number <<= static_cast<unsigned>(value.exponent - lowest);
       }
@@ -82,7 +82,7 @@ int turn_of(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
   const IntegerCorners exact(p, {a, b, b});
   const IntegerVector u = difference(exact.points[2], exact.points[1]),
                       w = difference(exact.points[0], exact.points[1]);
-  return Integer(u[1] * w[2] - u[2] * w[1]).sign();
+  return BigInteger(u[1] * w[2] - u[2] * w[1]).sign();
 }
 
 /// The same, where p is moved by (e, e²) for an infinitely small e > 0.
@@ -154,7 +154,7 @@ Bounds bounds_of_distance(const Vec3d& point, const TrianglePoints& corners) {
 }
 
 /// A distance that is certainly larger, and one that is certainly smaller.
-double increased(double distance) {
+double enlarged(double distance) {
   return distance * (1 + 0x1p-40) + 0x1p-1000;
 }
 
@@ -176,7 +176,7 @@ void include(const Vec3d& low, const Vec3d& high, Vec3d& min, Vec3d& max) {
 }  // namespace
 
 int compare(const SquaredDistance& p, const SquaredDistance& q) {
-  Integer here = p.over * q.under, there = q.over * p.under;
+  BigInteger here = p.over * q.under, there = q.over * p.under;
   const int shift = p.exponent - q.exponent;
   (shift > 0 ? here : there) <<= static_cast<unsigned>(std::abs(shift));
   return here.compare(there) < 0 ? -1 : here == there ? 0 : 1;
@@ -184,7 +184,7 @@ int compare(const SquaredDistance& p, const SquaredDistance& q) {
 
 SquaredDistance square_of(double distance) {
   const OddMantissa value(distance);
-  return {Integer(value.mantissa) * value.mantissa, 1, 2 * value.exponent};
+  return {BigInteger(value.mantissa) * value.mantissa, 1, 2 * value.exponent};
 }
 
 bool is_within_units(double distance, const SquaredDistance& squared, int units) {
@@ -203,23 +203,23 @@ SquaredDistance squared_distance_by_integers(const Vec3d& point, const TriangleP
   const auto& [p, a, b, c] = exact.points;
   const int exponent = 2 * exact.lowest;
   const IntegerVector u = difference(b, a), v = difference(c, a), w = difference(p, a), n = cross_of(u, v);
-  if (const Integer whole = dot_of(n, n); whole != 0) {
-    const Integer s = dot_of(cross_of(w, v), n), t = dot_of(cross_of(u, w), n);
+  if (const BigInteger whole = dot_of(n, n); whole != 0) {
+    const BigInteger s = dot_of(cross_of(w, v), n), t = dot_of(cross_of(u, w), n);
     if (s >= 0 && t >= 0 && s + t <= whole) {
-      const Integer volume = dot_of(n, w);
+      const BigInteger volume = dot_of(n, w);
       return {volume * volume, whole, exponent};
     }
   }
   std::optional<SquaredDistance> best;
-  const auto keep = [&](const Integer& over, const Integer& under) {
+  const auto keep = [&](const BigInteger& over, const BigInteger& under) {
     SquaredDistance found{over, under, exponent};
     if (!best || compare(found, *best) < 0) best = std::move(found);
   };
   for (std::size_t i = 1; i <= 3; ++i) {
     const IntegerVector edge = difference(exact.points[i % 3 + 1], exact.points[i]),
                         to_point = difference(p, exact.points[i]);
-    const Integer whole = dot_of(edge, edge), along = dot_of(to_point, edge),
-                  squared = dot_of(to_point, to_point);
+    const BigInteger whole = dot_of(edge, edge), along = dot_of(to_point, edge),
+                     squared = dot_of(to_point, to_point);
     keep(squared, 1);
     if (along > 0 && along < whole) keep(squared * whole - along * along, whole);
   }
@@ -296,7 +296,7 @@ PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point, std::size_t gues
   std::vector<std::pair<double, std::uint32_t>> candidates;
   double least = bounds_of_distance(point, triangles[guess].corners).upper;
   const auto is_in_reach = [&](const Vec3d& min, const Vec3d& max) {
-    return box_distance(point, min, max) <= increased(least);
+    return box_distance(point, min, max) <= enlarged(least);
   };
   tree.visit(point, is_in_reach, [&](std::uint32_t i) {
     if (!is_in_reach(triangles[i].min, triangles[i].max)) return;

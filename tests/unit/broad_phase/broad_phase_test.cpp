@@ -13,8 +13,7 @@
 #include "supple/error.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::broad_phase_test {
 
 using test::box_around;
 using test::double_loop;
@@ -368,5 +367,4 @@ TEST(BoundingBox, OfTouchingSpheresTouch) {
   EXPECT_TRUE(bounding_box(BoundingSphere{}).empty());
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::broad_phase_test

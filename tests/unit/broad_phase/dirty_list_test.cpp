@@ -12,8 +12,7 @@
 #include "support/instruction_sets.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::dirty_list_test {
 
 using test::box_around;
 using test::double_loop;
@@ -291,5 +290,4 @@ TEST(AutomaticSearch, CountsWhatChangedHoweverManyDid) {
   EXPECT_EQ(boxes.size(), 5'500u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::dirty_list_test

@@ -8,13 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/error.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::enclosing_box_test {
 
 using test::infinity;
 using test::Random;
@@ -147,5 +146,4 @@ TEST(EnclosingBox, RefusesARadiusBelowZero) {
   EXPECT_NO_THROW(enclosing_box({0, 0, 0}, {1, 1, 1}, -0.0));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::enclosing_box_test

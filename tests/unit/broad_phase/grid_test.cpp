@@ -11,8 +11,7 @@
 #include "support/instruction_sets.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::grid_test {
 
 using test::box_around;
 using test::double_loop;
@@ -252,5 +251,4 @@ TEST(PairSorter, SortsRunsOfAnyLength) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::grid_test

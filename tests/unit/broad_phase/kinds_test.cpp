@@ -12,8 +12,7 @@
 #include "support/instruction_sets.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::kinds_test {
 
 using test::box_around;
 using test::double_loop;
@@ -242,5 +241,4 @@ TEST(BroadPhaseKinds, RefusesWrongKinds) {
   EXPECT_EQ(found_by(with_kinds, boxes, {0, 0, 1, 1}), expected_pairs(boxes, {0, 0, 1, 1}, {{0, 1}}));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::kinds_test

@@ -15,8 +15,7 @@
 #include "supple/error.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::scene_octree_test {
 
 using test::box_around;
 using test::Random;
@@ -368,5 +367,4 @@ TEST(SceneOctree, ChoosesAnewWhenObjectsBecomeMany) {
   EXPECT_LT(octree.regions().size(), 2 * fresh.regions().size());
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::scene_octree_test

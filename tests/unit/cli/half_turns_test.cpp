@@ -10,8 +10,7 @@
 #include "supple/trigonometry.hpp"
 #include "support/random.hpp"
 
-namespace supple::cli {
-namespace {
+namespace supple::cli::half_turns_test {
 
 /// Turns about an axis of length 1 through a point.
 std::vector<Vec3d> turned(const std::vector<Vec3d>& points, Vec3d axis, double degrees, Vec3d through = {}) {
@@ -82,5 +81,4 @@ TEST(HalfTurns, NeedsFiniteVerticesThatMove) {
   EXPECT_FALSE(turns_too_far(from, to)) << "squares overflow, so nothing is known";
 }
 
-}  // namespace
-}  // namespace supple::cli
+}  // namespace supple::cli::half_turns_test

@@ -7,8 +7,7 @@
 
 #include "support/eventually.hpp"
 
-namespace supple::cli {
-namespace {
+namespace supple::cli::interruption_test {
 
 TEST(Interruption, SignalsStopTheCallAndThenEndTheRun) {
   for (const int signal : {SIGINT, SIGTERM}) {
@@ -44,5 +43,4 @@ TEST(Interruption, NothingIsOverdueAfterTheEnd) {
   EXPECT_FALSE(unlimited.is_requested());
 }
 
-}  // namespace
-}  // namespace supple::cli
+}  // namespace supple::cli::interruption_test

@@ -4,8 +4,7 @@
 
 #include "supple/error.hpp"
 
-namespace supple::cli {
-namespace {
+namespace supple::cli::picture_names_test {
 
 TEST(PictureNames, HaveTheNumberOfTheFrame) {
   const PictureNames padded("a/out_%04d.png");
@@ -24,5 +23,4 @@ TEST(PictureNames, RefuseOtherUsesOfThePercentSign) {
     EXPECT_THROW(PictureNames{pattern}, Error) << pattern;
 }
 
-}  // namespace
-}  // namespace supple::cli
+}  // namespace supple::cli::picture_names_test

@@ -21,7 +21,7 @@ static void PrintTo(const TimeBracket& bracket, std::ostream* stream) {
 
 namespace {
 
-using testing::Rational;
+using truth::Rational;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double smallest = std::numeric_limits<double>::denorm_min();
@@ -270,7 +270,7 @@ template <class Motion>
 Answer answer_that_agrees_with_samples(const Motion& motion, double separation, int samples) {
   const Answer found = first_contact_by_algebra(motion, separation);
   const Rational limit = Rational(separation) * Rational(separation);
-  const auto near = [&](const Rational& time) { return testing::squared_distance_at(motion, time) <= limit; };
+  const auto near = [&](const Rational& time) { return truth::squared_distance_at(motion, time) <= limit; };
   for (int k = 0; k <= samples; ++k) {
     const Rational time(k, samples);
     if (found && (time > Rational(found->low) || time == Rational(found->high))) break;
@@ -291,7 +291,7 @@ bool agrees_with_samples(const Motion& motion, double separation) {
   const Answer found = answer_that_agrees_with_samples(motion, separation, 12);
   if (!found) return false;
   const Rational limit = Rational(separation) * Rational(separation);
-  EXPECT_LE(testing::squared_distance_at(motion, Rational(found->high)), limit + Rational(1e-12));
+  EXPECT_LE(truth::squared_distance_at(motion, Rational(found->high)), limit + Rational(1e-12));
   return true;
 }
 

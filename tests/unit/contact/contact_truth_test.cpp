@@ -15,8 +15,7 @@
 #include "supple/mesh.hpp"
 #include "support/shared_meshes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::contact_truth_test {
 
 struct Query {
   std::array<Vec3d, 4> start, end;
@@ -156,5 +155,4 @@ TEST_F(ContactTruth, TimesOfTheKick) {
   EXPECT_EQ(checked, 34u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::contact_truth_test

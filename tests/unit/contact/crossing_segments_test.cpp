@@ -14,15 +14,14 @@
 #include "unit/contact/triangle_lists.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
-namespace supple {
-namespace {
+namespace supple::crossing_segments_test {
 
-using testing::converted;
-using testing::pair_families;
-using testing::PairFamily;
-using testing::PairList;
-using testing::TrianglePair3d;
-using testing::widened;
+using truth::converted;
+using truth::pair_families;
+using truth::PairFamily;
+using truth::PairList;
+using truth::TrianglePair3d;
+using truth::widened;
 
 bool same_bits(const Vec3d& p, const Vec3d& q) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -115,5 +114,4 @@ TEST(CrossingSegments, AreMostlyKnownInGeneralPosition) {
   EXPECT_GT(doubles.known, doubles.crossing * 9 / 10);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::crossing_segments_test

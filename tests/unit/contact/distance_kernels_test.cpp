@@ -14,8 +14,7 @@
 #include "support/instruction_sets.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::distance_kernels_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -201,5 +200,4 @@ TEST(DistanceKernels, NumbersHaveTheBitsOfTheScalarFunction) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::distance_kernels_test

@@ -7,12 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "geometry/vector.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::edge_face_crossing_test {
 
 Vec3d lattice_point(RandomNumbers& random, int size) {
   Vec3d p;
@@ -113,5 +112,4 @@ TEST(EdgeFaceCrossing, HasWeightsAndANormal) {
   EXPECT_GT(crossings, 500);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::edge_face_crossing_test

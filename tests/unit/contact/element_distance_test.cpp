@@ -9,14 +9,13 @@
 #include <optional>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "geometry/vector.hpp"
 #include "supple/distance.hpp"
 #include "supple/error.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::element_distance_test {
 
 std::optional<ElementDistance> distance_of(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b,
                                            double most = any_distance) {
@@ -161,5 +160,4 @@ TEST(ElementDistance, OfBadInput) {
   EXPECT_TRUE(point_point_distance({0, 0, 0}, {0, 0, 0}, 0));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::element_distance_test

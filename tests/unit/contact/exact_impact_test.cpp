@@ -16,12 +16,11 @@
 #include "unit/contact/slow_impact.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
-namespace supple {
-namespace {
+namespace supple::exact_impact_test {
 
-using testing::scaled_count;
-using testing::squared_distance_at;
-using testing::touch_at;
+using truth::scaled_count;
+using truth::squared_distance_at;
+using truth::touch_at;
 using Points = std::array<Vec3d, 4>;
 using Motion = std::variant<VertexFaceMotion, EdgeEdgeMotion>;
 
@@ -319,7 +318,7 @@ TEST(ExactImpact, FindsWhatDistancesFind) {
   for (int i = 0; i < scaled_count(400); ++i) {
     const Motion motion = small_motion(random);
     const auto first = first_contact(motion);
-    const auto slow = std::visit([&](const auto& m) { return testing::advance_until_near(m, near); }, motion);
+    const auto slow = std::visit([&](const auto& m) { return truth::advance_until_near(m, near); }, motion);
     ASSERT_EQ(first.has_value(), slow.has_value()) << describe(motion);
     if (!first) continue;
     EXPECT_LE(*slow, first->high) << describe(motion);
@@ -469,5 +468,4 @@ TEST(ExactImpact, OfHostileCoordinatesIsThatOfAlgebra) {
   EXPECT_GT(touching, count / 20);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::exact_impact_test

@@ -16,8 +16,7 @@
 #include "supple/mesh.hpp"
 #include "support/shared_meshes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::exact_impact_truth_test {
 
 struct PublishedQuery {
   EdgeEdgeMotion vertices;  ///< positions of two edges, or of a vertex and a face
@@ -129,5 +128,4 @@ TEST(ExactImpactTruth, TimesOfRealMotion) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::exact_impact_truth_test

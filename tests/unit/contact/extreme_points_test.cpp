@@ -7,16 +7,15 @@
 #include "unit/contact/rational_clipping.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
-namespace supple {
-namespace {
+namespace supple::extreme_points_test {
 
-using testing::exact;
-using testing::pair_families;
-using testing::PairFamily;
-using testing::Rational;
-using testing::RationalPoint;
-using testing::scaled_count;
-using testing::TrianglePair3d;
+using truth::rational;
+using truth::pair_families;
+using truth::PairFamily;
+using truth::Rational;
+using truth::RationalPoint;
+using truth::scaled_count;
+using truth::TrianglePair3d;
 
 class ExtremePoints : public ::testing::TestWithParam<PairFamily> {};
 INSTANTIATE_TEST_SUITE_P(All, ExtremePoints, ::testing::ValuesIn(pair_families()),
@@ -40,22 +39,22 @@ bool named_canonically(const TrianglePoints& triangle, Feature feature) {
     if (feature.kind == FeatureKind::vertex && corner(triangle, i) == first) return false;
   }
   if (feature.kind == FeatureKind::vertex) return true;
-  const RationalPoint edge = testing::subtract(exact(second), exact(first));
-  const RationalPoint offset = testing::subtract(exact(third), exact(first));
-  const RationalPoint normal = testing::cross(edge, offset);
-  const Rational part = testing::dot(edge, offset);
-  return normal != RationalPoint{} || (part >= 0 && part <= testing::dot(edge, edge));
+  const RationalPoint edge = truth::subtract(rational(second), rational(first));
+  const RationalPoint offset = truth::subtract(rational(third), rational(first));
+  const RationalPoint normal = truth::cross(edge, offset);
+  const Rational part = truth::dot(edge, offset);
+  return normal != RationalPoint{} || (part >= 0 && part <= truth::dot(edge, edge));
 }
 
 /// The extent of an edge along one axis; 0 for other features.
 Rational edge_extent(const TrianglePoints& triangle, Feature feature, std::size_t axis) {
   if (feature.kind != FeatureKind::edge) return 0;
-  return abs(exact(corner(triangle, feature.index + 1))[axis] - exact(corner(triangle, feature.index))[axis]);
+  return abs(rational(corner(triangle, feature.index + 1))[axis] - rational(corner(triangle, feature.index))[axis]);
 }
 
 void expect_accurate(const TrianglePair3d& pair, const ContactPoint& point, const RationalPoint& truth) {
   const bool at_vertex = point.on_a.kind == FeatureKind::vertex || point.on_b.kind == FeatureKind::vertex;
-  const RationalPoint given = exact(point.position);
+  const RationalPoint given = rational(point.position);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double value = point.position[static_cast<int>(axis)];
     ASSERT_TRUE(std::isfinite(value));
@@ -63,7 +62,7 @@ void expect_accurate(const TrianglePair3d& pair, const ContactPoint& point, cons
     const double step = std::isinf(above) ? size - std::nextafter(size, 0) : above - size;
     const Rational extent =
         std::max(edge_extent(pair.a, point.on_a, axis), edge_extent(pair.b, point.on_b, axis));
-    const Rational allowed = extent * exact({0x1p-44, 0, 0})[0] + exact({step, 0, 0})[0] / 2;
+    const Rational allowed = extent * rational({0x1p-44, 0, 0})[0] + rational({step, 0, 0})[0] / 2;
     EXPECT_LE(abs(given[axis] - truth[axis]), at_vertex ? Rational(0) : allowed);
     for (const TrianglePoints* triangle : {&pair.a, &pair.b}) {
       const int i = static_cast<int>(axis);
@@ -79,10 +78,10 @@ void expect_convex_order(const std::vector<RationalPoint>& points) {
   RationalPoint normal{};
   for (std::size_t i = 0; i < points.size(); ++i) {
     const RationalPoint& next = points[(i + 1) % points.size()];
-    const RationalPoint turn = testing::cross(testing::subtract(next, points[i]),
-                                              testing::subtract(points[(i + 2) % points.size()], next));
+    const RationalPoint turn = truth::cross(truth::subtract(next, points[i]),
+                                              truth::subtract(points[(i + 2) % points.size()], next));
     if (i == 0) normal = turn;
-    EXPECT_GT(testing::dot(turn, normal), 0);
+    EXPECT_GT(truth::dot(turn, normal), 0);
   }
 }
 
@@ -96,14 +95,14 @@ void expect_canonical_order(std::span<const ContactPoint> points) {
 
 void check(const TrianglePair3d& pair) {
   const TriangleIntersection result = intersect_triangles(pair.a, pair.b);
-  const std::vector<RationalPoint> truth = testing::clipped_extreme_points(pair.a, pair.b);
+  const std::vector<RationalPoint> truth = truth::clipped_extreme_points(pair.a, pair.b);
   ASSERT_EQ(result.point_count, truth.size());
   EXPECT_EQ(result.intersects, !truth.empty());
   std::vector<RationalPoint> found;
   for (const ContactPoint& point : result.extreme_points()) {
-    found.push_back(testing::exact_meeting_point(pair.a, point.on_a, pair.b, point.on_b));
-    EXPECT_TRUE(testing::in_relative_interior(found.back(), pair.a, point.on_a));
-    EXPECT_TRUE(testing::in_relative_interior(found.back(), pair.b, point.on_b));
+    found.push_back(truth::exact_meeting_point(pair.a, point.on_a, pair.b, point.on_b));
+    EXPECT_TRUE(truth::in_relative_interior(found.back(), pair.a, point.on_a));
+    EXPECT_TRUE(truth::in_relative_interior(found.back(), pair.b, point.on_b));
     EXPECT_TRUE(named_canonically(pair.a, point.on_a));
     EXPECT_TRUE(named_canonically(pair.b, point.on_b));
     expect_accurate(pair, point, found.back());
@@ -200,5 +199,4 @@ TEST(SharedEdges, ReportTheSameBitsInBothTriangles) {
   EXPECT_GT(compared, 1000);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::extreme_points_test

@@ -23,8 +23,7 @@
 #include "support/soups.hpp"
 #include "unit/contact/slow_impact.hpp"
 
-namespace supple {
-namespace {
+namespace supple::first_impact_test {
 
 #if defined(NDEBUG) && !defined(SUPPLE_SANITIZED)
 constexpr int queries_per_family = 8000;
@@ -233,7 +232,7 @@ void expect_normal_between_points(const Motion& motion, const Impact& impact, do
 
 template <class Motion>
 void expect_start_distance(const Motion& motion, const Impact& impact) {
-  const testing::Rational square = testing::squared_distance_at(motion, testing::Rational(0));
+  const truth::Rational square = truth::squared_distance_at(motion, truth::Rational(0));
   const auto distance = static_cast<double>(std::sqrt(static_cast<long double>(square)));
   EXPECT_NEAR(impact.start_distance, distance, 0x1p-20 * distance);
 }
@@ -617,5 +616,4 @@ TEST(FirstImpactErrors, NothingTouchesWhatIsNotFinite) {
   EXPECT_FALSE(first_impact(motion));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::first_impact_test

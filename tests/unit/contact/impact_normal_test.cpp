@@ -10,8 +10,7 @@
 #include "supple/continuous.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::impact_normal_test {
 
 using Points = std::array<Vec3d, 4>;
 
@@ -164,5 +163,4 @@ TEST(ImpactNormal, OfPointsAndEdgesOnOneLineIsAcrossIt) {
   EXPECT_EQ(points->normal, (Vec3d{0, -1, 0}));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::impact_normal_test

@@ -12,15 +12,14 @@
 #include "unit/contact/triangle_lists.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
-namespace supple {
-namespace {
+namespace supple::pair_filter_test {
 
-using testing::converted;
-using testing::pair_families;
-using testing::PairFamily;
-using testing::PairList;
-using testing::TrianglePair3d;
-using testing::widened;
+using truth::converted;
+using truth::pair_families;
+using truth::PairFamily;
+using truth::PairList;
+using truth::TrianglePair3d;
+using truth::widened;
 
 /// The reference for the filter: one pair in scalar arithmetic, with the same order of operations.
 template <class Scalar>
@@ -235,5 +234,4 @@ TEST(PairFilterRate, FewPairsInGeneralPositionStayUndecided) {
   EXPECT_LT(undecided_in_general_position<float>(), 4);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::pair_filter_test

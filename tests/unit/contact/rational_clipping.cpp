@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace supple::testing {
+namespace supple::truth {
 namespace {
 
 namespace mp = boost::multiprecision;
@@ -20,7 +20,7 @@ bool is_zero(const RationalPoint& v) {
   return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
-RationalPoint along(const RationalPoint& from, const RationalPoint& to, const Rational& part) {
+RationalPoint between(const RationalPoint& from, const RationalPoint& to, const Rational& part) {
   RationalPoint point;
   for (std::size_t i = 0; i < 3; ++i) point[i] = from[i] + part * (to[i] - from[i]);
   return point;
@@ -42,7 +42,7 @@ struct HalfSpace {
 };
 
 std::vector<RationalPoint> extreme_corners(const TrianglePoints& triangle) {
-  std::vector<RationalPoint> corners{exact(triangle[0]), exact(triangle[1]), exact(triangle[2])};
+  std::vector<RationalPoint> corners{rational(triangle[0]), rational(triangle[1]), rational(triangle[2])};
   if (!is_zero(cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0])))) return corners;
   std::sort(corners.begin(), corners.end());
   if (corners.front() == corners.back()) return {corners.front()};
@@ -95,19 +95,19 @@ std::vector<RationalPoint> clip(const std::vector<RationalPoint>& polygon, const
     const Rational beyond_next = dot(half_space.normal, next) - half_space.offset;
     if (beyond_here <= 0) add(here);
     if ((beyond_here < 0 && beyond_next > 0) || (beyond_here > 0 && beyond_next < 0)) {
-      add(along(here, next, beyond_here / (beyond_here - beyond_next)));
+      add(between(here, next, beyond_here / (beyond_here - beyond_next)));
     }
   }
   return result;
 }
 
 RationalPoint corner(const TrianglePoints& triangle, int i) {
-  return exact(triangle[static_cast<std::size_t>(i % 3)]);
+  return rational(triangle[static_cast<std::size_t>(i % 3)]);
 }
 
 }  // namespace
 
-RationalPoint exact(const Vec3d& point) {
+RationalPoint rational(const Vec3d& point) {
   return {exact_number(point.x), exact_number(point.y), exact_number(point.z)};
 }
 RationalPoint subtract(const RationalPoint& a, const RationalPoint& b) {
@@ -161,7 +161,7 @@ RationalPoint exact_meeting_point(const TrianglePoints& a, Feature on_a, const T
     normal = cross(direction, cross(direction, subtract(to, from)));
   }
   const Rational first = dot(normal, subtract(from, origin)), second = dot(normal, subtract(to, origin));
-  return along(from, to, first / (first - second));
+  return between(from, to, first / (first - second));
 }
 
-}  // namespace supple::testing
+}  // namespace supple::truth

@@ -6,13 +6,13 @@
 
 #include "supple/triangle_intersection.hpp"
 
-namespace supple::testing {
+namespace supple::truth {
 
 using Rational =
     boost::multiprecision::number<boost::multiprecision::cpp_rational_backend, boost::multiprecision::et_off>;
 using RationalPoint = std::array<Rational, 3>;
 
-RationalPoint exact(const Vec3d& point);
+RationalPoint rational(const Vec3d& point);
 RationalPoint subtract(const RationalPoint& a, const RationalPoint& b);
 RationalPoint cross(const RationalPoint& a, const RationalPoint& b);
 Rational dot(const RationalPoint& a, const RationalPoint& b);
@@ -28,4 +28,4 @@ bool in_relative_interior(const RationalPoint& point, const TrianglePoints& tria
 RationalPoint exact_meeting_point(const TrianglePoints& a, Feature on_a, const TrianglePoints& b,
                                   Feature on_b);
 
-}  // namespace supple::testing
+}  // namespace supple::truth

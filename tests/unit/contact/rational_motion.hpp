@@ -8,13 +8,13 @@
 
 // Positions of moving elements and distances between them at a rational time, in rational arithmetic.
 
-namespace supple::testing {
+namespace supple::truth {
 
 inline std::array<RationalPoint, 4> positions_at(const std::array<Vec3d, 4>& start,
                                                  const std::array<Vec3d, 4>& end, const Rational& time) {
   std::array<RationalPoint, 4> result;
   for (std::size_t i = 0; i < 4; ++i) {
-    const RationalPoint from = exact(start[i]), to = exact(end[i]);
+    const RationalPoint from = rational(start[i]), to = rational(end[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       result[i][axis] = from[axis] + time * (to[axis] - from[axis]);
     }
@@ -85,4 +85,4 @@ inline Rational squared_distance_at(const EdgeEdgeMotion& motion, const Rational
   return squared_distance_of_edges(positions_at(motion.start, motion.end, time));
 }
 
-}  // namespace supple::testing
+}  // namespace supple::truth

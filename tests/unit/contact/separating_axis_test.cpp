@@ -5,13 +5,12 @@
 #include "supple/triangle_intersection.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
-namespace supple {
-namespace {
+namespace supple::separating_axis_test {
 
-using testing::pair_families;
-using testing::PairFamily;
-using testing::scaled_count;
-using testing::TrianglePair3d;
+using truth::pair_families;
+using truth::PairFamily;
+using truth::scaled_count;
+using truth::TrianglePair3d;
 
 constexpr TrianglePoints unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
 
@@ -79,5 +78,4 @@ TEST_P(Decision, EqualsThatOfSeparatingAxes) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::separating_axis_test

@@ -12,13 +12,12 @@
 #include "support/random.hpp"
 #include "unit/contact/triangle_pairs.hpp"
 
-namespace supple {
-namespace {
+namespace supple::separating_normal_test {
 
-using testing::pair_families;
-using testing::PairFamily;
-using testing::scaled_count;
-using testing::TrianglePair3d;
+using truth::pair_families;
+using truth::PairFamily;
+using truth::scaled_count;
+using truth::TrianglePair3d;
 
 using Exact = long double;
 using Vec3l = Vec3<Exact>;
@@ -228,5 +227,4 @@ TEST(UnitNormal, IsThatOfTheCornersInOrder) {
   EXPECT_EQ(area({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}}), 0);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::separating_normal_test

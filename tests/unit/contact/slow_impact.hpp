@@ -10,7 +10,7 @@
 #include "unit/contact/rational_clipping.hpp"
 
 // Finds when moving elements first touch, from their distance instead of polynomials in time.
-namespace supple::testing {
+namespace supple::truth {
 
 template <class Real>
 using Point = std::array<Real, 3>;
@@ -107,4 +107,4 @@ std::optional<double> advance_until_near(const Motion& motion, double near) {
   }
 }
 
-}  // namespace supple::testing
+}  // namespace supple::truth

@@ -15,8 +15,7 @@
 
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::step_root_test {
 
 using Coefficients = std::array<int, 3>;  // of (1 - t)², t (1 - t) and t²
 
@@ -169,5 +168,4 @@ TYPED_TEST(CommonRootsOf, ASignOverAnIntervalIsThatOfEveryPoint) {
   EXPECT_GT(proven, 400);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::step_root_test

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace supple {
-namespace {
+namespace supple::triangle_intersection_test {
 
 constexpr Feature v0{FeatureKind::vertex, 0}, v1{FeatureKind::vertex, 1}, v2{FeatureKind::vertex, 2};
 constexpr Feature e0{FeatureKind::edge, 0}, e1{FeatureKind::edge, 1}, e2{FeatureKind::edge, 2};
@@ -229,5 +228,4 @@ TEST(TriangleIntersection, SaysWhenIntegersDecided) {
                   .used_exact_fallback);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::triangle_intersection_test

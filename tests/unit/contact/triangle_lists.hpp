@@ -11,7 +11,7 @@
 #include "supple/triangle_intersection.hpp"
 #include "supple/types.hpp"
 
-namespace supple::testing {
+namespace supple::truth {
 
 template <class Scalar>
 std::array<Vec3<Scalar>, 3> converted(const TrianglePoints& triangle) {
@@ -74,4 +74,4 @@ struct PairList {
   std::vector<TrianglePair> pairs;
 };
 
-}  // namespace supple::testing
+}  // namespace supple::truth

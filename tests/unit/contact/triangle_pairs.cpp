@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <limits>
 
-namespace supple::testing {
+namespace supple::truth {
 namespace {
 
 template <class Coordinate>
@@ -208,4 +208,4 @@ std::string describe(const TrianglePair3d& pair) {
   return text;
 }
 
-}  // namespace supple::testing
+}  // namespace supple::truth

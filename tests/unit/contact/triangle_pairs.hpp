@@ -8,7 +8,7 @@
 #include "supple/triangle_intersection.hpp"
 #include "support/random.hpp"
 
-namespace supple::testing {
+namespace supple::truth {
 
 struct TrianglePair3d {
   TrianglePoints a, b;
@@ -38,4 +38,4 @@ inline int scaled_count(int count_in_debug) {
 #endif
 }
 
-}  // namespace supple::testing
+}  // namespace supple::truth

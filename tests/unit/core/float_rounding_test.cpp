@@ -7,8 +7,7 @@
 
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::float_rounding_test {
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 
@@ -35,5 +34,4 @@ TEST(FloatRounding, BeyondTheRangeOfFloat) {
   EXPECT_EQ(round_down(0.5), 0.5f);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::float_rounding_test

@@ -15,8 +15,7 @@
 #include <sys/resource.h>
 #endif
 
-namespace supple {
-namespace {
+namespace supple::parallel_test {
 
 class ParallelFor : public testing::TestWithParam<std::uint32_t> {};
 
@@ -94,5 +93,4 @@ TEST(AvailableThreadsDeathTest, AreFewerWhenTheSystemRefusesThem) {
 }
 #endif
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::parallel_test

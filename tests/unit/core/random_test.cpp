@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace supple {
-namespace {
+namespace supple::random_test {
 
 TEST(Random, GivesTheSameBitsEverywhere) {
   Random random(1, 2);
@@ -56,5 +55,4 @@ TEST(Random, DirectionsAreUnitVectorsThatFavourNone) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::random_test

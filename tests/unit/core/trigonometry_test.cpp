@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace supple {
-namespace {
+namespace supple::trigonometry_test {
 
 TEST(DeterministicMath, FollowsTheStandardLibrary) {
   const double two_pi = 2 * std::acos(-1.0);
@@ -24,5 +23,4 @@ TEST(DeterministicMath, QuarterTurnsAreExact) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::trigonometry_test

@@ -6,8 +6,7 @@
 
 #include "supple/error.hpp"
 
-namespace supple {
-namespace {
+namespace supple::utf8_test {
 
 constexpr const char* replacement = "\xef\xbf\xbd";
 
@@ -51,5 +50,4 @@ TEST(Utf8, ErrorsAreOneLineOfValidText) {
   EXPECT_STREQ(Error("a\xff\nb").what(), "a\xef\xbf\xbd b");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::utf8_test

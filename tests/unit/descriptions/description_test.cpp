@@ -12,8 +12,7 @@
 #include "other_values.hpp"
 #include "supple/error.hpp"
 
-namespace supple {
-namespace {
+namespace supple::description_test {
 
 template <class Struct>
 class EachStructure : public testing::Test {};
@@ -160,5 +159,4 @@ TEST(Descriptions, OtherValuesDifferFromTheDefaultsAndAreAllowed) {
   expect(WaveMotion{});
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::description_test

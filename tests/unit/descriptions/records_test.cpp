@@ -12,8 +12,7 @@
 #include "supple/query_descriptions.hpp"
 #include "supple/result_lists.hpp"
 
-namespace supple {
-namespace {
+namespace supple::records_test {
 
 /// Initialises a member of any type.
 struct Anything {
@@ -105,5 +104,4 @@ TEST(RecordDescriptions, HaveEveryMember) {
   expect_whole_description<Impact>();
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::records_test

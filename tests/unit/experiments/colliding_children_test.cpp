@@ -4,8 +4,7 @@
 
 #include <cstdint>
 
-namespace supple::experiments {
-namespace {
+namespace supple::experiments::colliding_children_test {
 
 OctreeCell cell(std::uint32_t level, std::uint64_t number, bool is_leaf = false) {
   OctreeCell result;
@@ -41,5 +40,4 @@ TEST(CollidingChildren, AreNoneWithoutLevelsBelowTheRoot) {
   EXPECT_EQ(colliding_children(list, 8).nodes, 0u);
 }
 
-}  // namespace
-}  // namespace supple::experiments
+}  // namespace supple::experiments::colliding_children_test

@@ -12,8 +12,7 @@
 #include "experiments/table1/paper_table.hpp"
 #include "supple/models.hpp"
 
-namespace supple::experiments {
-namespace {
+namespace supple::experiments::experiments_test {
 
 TEST(PaperTable, AveragesAreThoseOfTheTextButForOne) {
   for (const PaperRow& row : paper_rows()) {
@@ -147,5 +146,4 @@ TEST(Arity, HasEveryArity) {
   }
 }
 
-}  // namespace
-}  // namespace supple::experiments
+}  // namespace supple::experiments::experiments_test

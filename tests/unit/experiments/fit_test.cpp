@@ -6,8 +6,7 @@
 
 #include "experiments/judgement.hpp"
 
-namespace supple::experiments {
-namespace {
+namespace supple::experiments::fit_test {
 
 Points points_of(double (*function)(double)) {
   Points points;
@@ -148,5 +147,4 @@ TEST(Estimate, HasTheStandardErrorOfTheMean) {
   EXPECT_TRUE(std::isnan(estimate_of({}).mean));
 }
 
-}  // namespace
-}  // namespace supple::experiments
+}  // namespace supple::experiments::fit_test

@@ -10,8 +10,7 @@
 #include "scene_file/scene_file.hpp"
 #include "supple/simulation.hpp"
 
-namespace supple {
-namespace {
+namespace supple::paper_scenes_test {
 
 /// The mean area error of all objects after 1.1 seconds, in which random forces deform them.
 double area_error_of(const std::string& scene, bool preserved) {
@@ -81,5 +80,4 @@ TEST(PaperScenes, BendUntilTheEnd) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::paper_scenes_test

@@ -4,8 +4,7 @@
 
 #include "supple/error.hpp"
 
-namespace supple::experiments {
-namespace {
+namespace supple::experiments::report_test {
 
 Table small_table() {
   Table table{"small", "A table", {{"word", "Word"}, {"count", "Count"}, {"number_ms", "Number ms", 3}}};
@@ -69,5 +68,4 @@ TEST(Report, SaysWhatHolds) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace supple::experiments
+}  // namespace supple::experiments::report_test

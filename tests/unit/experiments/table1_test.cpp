@@ -16,8 +16,7 @@
 #include "experiments/table1/table1_scenes.hpp"
 #include "supple/error.hpp"
 
-namespace supple::experiments {
-namespace {
+namespace supple::experiments::table1_test {
 
 namespace fs = std::filesystem;
 
@@ -347,5 +346,4 @@ TEST(Table1Claims, RunsThatBrokeOffDoNotCount) {
   EXPECT_EQ(runs.seconds_for_one(&RunCounts::broad), 600.0 / 11);
 }
 
-}  // namespace
-}  // namespace supple::experiments
+}  // namespace supple::experiments::table1_test

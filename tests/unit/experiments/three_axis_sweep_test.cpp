@@ -6,8 +6,7 @@
 
 #include "support/random.hpp"
 
-namespace supple::experiments {
-namespace {
+namespace supple::experiments::three_axis_sweep_test {
 
 std::vector<IndexPair> overlapping_pairs(const std::vector<Aabb>& boxes) {
   std::vector<IndexPair> pairs;
@@ -54,5 +53,4 @@ TEST(ThreeAxisSweep, FindsThePairsOfBruteForceInEveryStep) {
   }
 }
 
-}  // namespace
-}  // namespace supple::experiments
+}  // namespace supple::experiments::three_axis_sweep_test

@@ -7,8 +7,7 @@
 #include "supple/formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::amf_test {
 
 std::string vertex(int x, int y, int z) {
   return "<vertex><coordinates><x> " + std::to_string(x) + " </x><y>" + std::to_string(y) + "</y><z>" +
@@ -115,5 +114,4 @@ TEST(Amf, SaysWhatIsWrong) {
   expect(amf(tower), "more than 33 million");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::amf_test

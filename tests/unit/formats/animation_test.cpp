@@ -10,8 +10,7 @@
 #include "unit/formats/gltf_builder.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::animation_test {
 
 constexpr double pi = 3.14159265358979323846;
 const std::vector<float> triangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -303,5 +302,4 @@ TEST(Animation, PointersToWeights) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::animation_test

@@ -7,8 +7,7 @@
 #include "supple/formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::collada_test {
 
 /// A triangle whose array and accessor have these attributes.
 std::string collada(const std::string& array, const std::string& accessor,
@@ -88,5 +87,4 @@ TEST(Collada, TheLastElementMayBeWithoutItsRest) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::collada_test

@@ -7,8 +7,7 @@
 #include "supple/formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::coordinates_test {
 
 const std::vector<Vec3d> points = {{0, 0, 5}, {1, 0, 5}, {0, 1, 5}};
 
@@ -161,5 +160,4 @@ TEST(Coordinates, ConversionOnRequest) {
   EXPECT_FALSE(can_convert({}, {UpAxis::z, LengthUnit::m}));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::coordinates_test

@@ -7,8 +7,7 @@
 
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::element_mesh_test {
 
 using Triangles = std::vector<Triangle>;
 
@@ -81,5 +80,4 @@ TEST(ElementMesh, OutwardsIsExact) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::element_mesh_test

@@ -11,8 +11,7 @@
 
 // The reader has a ufbx inside. These tests compare with another one, which they link as a program could.
 
-namespace supple {
-namespace {
+namespace supple::fbx_test {
 
 constexpr std::int64_t second = 46186158000;  // in the unit of time of FBX
 
@@ -417,5 +416,4 @@ TEST(Fbx, SaysWhatIsWrong) {
   EXPECT_FALSE(is_read_by_assimp("a.fbx"));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::fbx_test

@@ -5,8 +5,7 @@
 #include "supple/formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::file_kinds_test {
 
 TEST(FileKinds, ExtensionsWithoutAReader) {
   EXPECT_EQ(error_of([] { load_any_mesh("a.abc"); }),
@@ -132,5 +131,4 @@ TEST(FileKinds, MeditAndOgreShareAnExtension) {
   EXPECT_FALSE(is_read_by_assimp("missing.mesh"));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::file_kinds_test

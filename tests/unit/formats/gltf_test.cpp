@@ -13,8 +13,7 @@
 #include "unit/formats/gltf_builder.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::gltf_test {
 
 const std::vector<float> triangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 const std::vector<Vec3d> triangle_points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -344,5 +343,4 @@ TEST(Gltf, ProjectionsAreNoTransforms) {
   EXPECT_EQ(message_for(15, 1 + 1e-7), "");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::gltf_test

@@ -11,8 +11,7 @@
 #include "unit/formats/gltf_builder.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::load_any_mesh_test {
 
 // A square whose triangles share no vertices, as if their normals differed. Bytes 0-71: points, 72-83: ids.
 std::string square_buffer(float side) {
@@ -185,5 +184,4 @@ TEST(SupportedExtensions, NativeOnesAndThoseOfAssimp) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::load_any_mesh_test

@@ -6,8 +6,7 @@
 #include "supple/formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::mfem_test {
 
 const std::string start = "MFEM mesh v1.0\n\n# comment\n\ndimension\n3\n\n";
 const std::string tetrahedron = "elements\n1\n1 4 0 1 2 3\n\nboundary\n2\n1 2 0 1 2\n7 2 0 1 3\n\n";
@@ -86,5 +85,4 @@ TEST(Mfem, SaysWhatIsWrong) {
   expect(start + tetrahedron + "vertices\n4\n3\n0 0 0\n1", "the file");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::mfem_test

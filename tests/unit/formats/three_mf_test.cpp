@@ -8,8 +8,7 @@
 #include "supple/formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::three_mf_test {
 
 using Parts = std::map<std::string, std::string>;
 using Triangles = std::vector<Triangle>;
@@ -185,5 +184,4 @@ TEST(ThreeMf, ArchivesThatExpandTooMuchAreErrors) {
             "compress it less");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::three_mf_test

@@ -8,8 +8,7 @@
 #include "supple/formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::volume_errors_test {
 
 using Triangles = std::vector<Triangle>;
 
@@ -158,5 +157,4 @@ TEST(Tetgen, TrianglesOfTwoDimensions) {
   EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}}));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::volume_errors_test

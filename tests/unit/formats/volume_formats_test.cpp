@@ -11,8 +11,7 @@
 #include "support/volume_files.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::volume_formats_test {
 
 constexpr Solid kinds[] = {Solid::tetrahedron, Solid::hexahedron, Solid::prism, Solid::pyramid};
 constexpr FileWriter::Encoding encodings[] = {FileWriter::text, FileWriter::little, FileWriter::big};
@@ -320,5 +319,4 @@ TEST(Tetgen, BoundariesFromZeroAndOne) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::volume_formats_test

@@ -10,8 +10,7 @@
 #include "unit/formats/gltf_builder.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::vtk_xml_test {
 
 enum class Form { text, base64, raw, base64_after, zlib, zlib_after };
 
@@ -205,5 +204,4 @@ TEST(VtkXml, SaysWhatIsWrong) {
       "announces more blocks than the file has");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::vtk_xml_test

@@ -9,8 +9,7 @@
 #include "geometry/plane_filter.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::exact_predicates_test {
 
 namespace mp = boost::multiprecision;
 constexpr double smallest = std::numeric_limits<double>::denorm_min();
@@ -250,5 +249,4 @@ TEST(LexicographicallyLess, ComparesXThenYThenZ) {
   EXPECT_FALSE(lexicographically_less({2, 0, 0}, {1, 9, 9}));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::exact_predicates_test

@@ -9,8 +9,7 @@
 
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::polynomial_test {
 
 using Integer = Polynomial::Integer;
 using Rational = boost::multiprecision::cpp_rational;
@@ -275,5 +274,4 @@ TEST(UnitRoots, SignOfOthersAtAnIrrationalRoot) {
   EXPECT_EQ(root.neighbouring_doubles(), (std::pair{std::nextafter(std::sqrt(0.5), 0.0), std::sqrt(0.5)}));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::polynomial_test

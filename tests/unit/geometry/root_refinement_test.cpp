@@ -4,8 +4,7 @@
 
 #include <vector>
 
-namespace supple {
-namespace {
+namespace supple::root_refinement_test {
 
 using Integer = UnboundedInteger;
 
@@ -91,5 +90,4 @@ TEST(RootRefinement, StopsAtExactRoots) {
   EXPECT_EQ(at_fine.low, at_fine.high);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::root_refinement_test

@@ -9,8 +9,7 @@
 
 #include "support/random.hpp"
 
-namespace supple::sturm {
-namespace {
+namespace supple::sturm::sturm_test {
 
 using Rational = boost::multiprecision::cpp_rational;
 
@@ -84,5 +83,4 @@ TEST(Sturm, KnowsRootsAtTheEndsAndNearThem) {
   EXPECT_EQ(tiny[0].sign_of({0, 1}), 1);
 }
 
-}  // namespace
-}  // namespace supple::sturm
+}  // namespace supple::sturm::sturm_test

@@ -12,8 +12,7 @@
 #include "support/random.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::mesh_file_test {
 
 namespace fs = std::filesystem;
 
@@ -196,5 +195,4 @@ TEST(CheckMesh, NamesTheTriangleAndTheValue) {
             "mesh 'rabbit': edge 0 uses vertex 7; the mesh has 3 vertices, counted from 0");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::mesh_file_test

@@ -10,8 +10,7 @@
 #include "support/random.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::mutation_test {
 
 using Reader = TriangleMesh (*)(std::string_view, const std::string&);
 
@@ -166,5 +165,4 @@ TEST(DamagedFiles, FilesOfAnotherFormat) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::mutation_test

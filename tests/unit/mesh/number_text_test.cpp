@@ -10,8 +10,7 @@
 
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::number_text_test {
 
 std::uint64_t bits(double value) {
   return std::bit_cast<std::uint64_t>(value);
@@ -144,5 +143,4 @@ TEST(ParseInteger, SignsAndLimits) {
   EXPECT_EQ(integer(""), -77);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::number_text_test

@@ -10,8 +10,7 @@
 #include "mesh/files/mesh_formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::obj_test {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";  // lines 1 to 4
@@ -163,5 +162,4 @@ TEST(Obj, SaysWhatIsWrongAndWhere) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::obj_test

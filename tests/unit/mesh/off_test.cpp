@@ -8,8 +8,7 @@
 #include "mesh/files/mesh_formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::off_test {
 
 const std::string corners = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
 
@@ -130,5 +129,4 @@ TEST(Off, SaysWhatIsWrongAndWhere) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::off_test

@@ -12,8 +12,7 @@
 #include "supple/topology.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::parts_test {
 
 using Ids = std::vector<std::uint32_t>;
 
@@ -130,5 +129,4 @@ TEST(FaultOfSolid, NamesWhatSceneAddRefuses) {
   EXPECT_EQ(fault_of_solid(welded(soup)), "");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::parts_test

@@ -10,8 +10,7 @@
 #include "mesh/files/mesh_formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::ply_test {
 
 const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
 const std::string faces = "property list uchar int vertex_indices\n";
@@ -326,5 +325,4 @@ TEST(Ply, FacesWithoutCornersAreNone) {
   EXPECT_TRUE(mesh.points.empty());
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::ply_test

@@ -11,8 +11,7 @@
 #include "support/polygons.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::polygon_cutter_test {
 
 using polygons::fault_of_cover;
 using polygons::Point;
@@ -385,5 +384,4 @@ TEST(PolygonCutter, CrossingsWhereTheLastCornerRepeatsTheFirst) {
   EXPECT_EQ(fault_of_cover(convex, cut(in_space(convex)).triangles), "");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::polygon_cutter_test

@@ -11,8 +11,7 @@
 #include "supple/topology.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::shared_meshes_test {
 
 TEST(SharedMeshes, CountsAreTheKnownOnes) {
   const std::filesystem::path folder = shared_meshes();
@@ -55,5 +54,4 @@ TEST(SharedMeshes, SavedAgainTheyAreTheSame) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::shared_meshes_test

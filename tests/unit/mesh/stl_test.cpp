@@ -10,8 +10,7 @@
 #include "mesh/files/mesh_formats.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::stl_test {
 
 std::string facet(const std::string& a, const std::string& b, const std::string& c) {
   return "  facet normal 0 0 1\n    outer loop\n      vertex " + a + "\n      vertex " + b +
@@ -197,5 +196,4 @@ TEST(Stl, ANumberOfZeroWithFacetsAfterIt) {
   EXPECT_EQ(mesh.positions.size(), 4u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::stl_test

@@ -10,8 +10,7 @@
 #include "support/random.hpp"
 #include "unit/mesh/mesh_files.hpp"
 
-namespace supple {
-namespace {
+namespace supple::topology_test {
 
 MeshTopology topology_of(std::size_t vertices, std::vector<Triangle> triangles) {
   TriangleMesh mesh;
@@ -156,5 +155,4 @@ TEST(Topology, NeighbourPairs) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::topology_test

@@ -16,8 +16,7 @@
 #include "supple/error.hpp"
 #include "support/golden_models.hpp"
 
-namespace supple {
-namespace {
+namespace supple::models_test {
 
 /// Triangles connected through shared vertices.
 struct Component {
@@ -350,5 +349,4 @@ TEST(Primitives, RefuseMeshesThatIdsCannotNumber) {
   EXPECT_THROW(make_cloth(4'000'000'000, 4'000'000'000), Error);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::models_test

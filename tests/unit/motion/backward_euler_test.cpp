@@ -9,8 +9,7 @@
 #include "supple/error.hpp"
 #include "support/bodies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::backward_euler_test {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
@@ -313,5 +312,4 @@ TEST(SymmetricBlock, InverseUndoesIt) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::backward_euler_test

@@ -4,8 +4,7 @@
 
 #include "support/bodies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::closed_form_test {
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -150,5 +149,4 @@ TEST(Pendulum, SwingsWithItsPeriod) {
   EXPECT_NEAR(body.positions()[1].x / angle, 0, 1e-4);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::closed_form_test

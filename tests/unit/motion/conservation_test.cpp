@@ -4,8 +4,7 @@
 
 #include "support/bodies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::conservation_test {
 
 /// Relative errors of the energy of a freely oscillating sphere: the largest one, and the drift from the mean
 /// of the first quarter to the mean of the last.
@@ -128,5 +127,4 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"LimitedPlastic", {.max_strain = 0.1, .yield_strain = 0.05}}),
     [](const auto& kind) { return kind.param.name; });
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::conservation_test

@@ -7,8 +7,7 @@
 #include "supple/error.hpp"
 #include "support/bodies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::degenerate_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -167,5 +166,4 @@ TEST(MassSpringBody, TellsItsRestState) {
   EXPECT_NEAR(larger.area_error().mean, 0.21, 1e-12);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::degenerate_test

@@ -7,8 +7,7 @@
 #include "supple/topology.hpp"
 #include "support/bodies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::elements_test {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
@@ -143,5 +142,4 @@ TEST(AreaForces, KeepAreasUnderPull) {
   EXPECT_LT(hundredfold.mean, 0.06 * none.mean);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::elements_test

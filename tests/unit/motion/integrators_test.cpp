@@ -5,8 +5,7 @@
 #include "supple/error.hpp"
 #include "support/bodies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::integrators_test {
 
 std::vector<Vec3d> after_a_second(Integrator integrator, int steps, double volume_stiffness) {
   const TriangleMesh mesh = make_icosphere(1);
@@ -180,5 +179,4 @@ TEST(Substeps, AreThatManySteps) {
   EXPECT_EQ(largest_difference(whole.positions(), parts.positions()), 0);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::integrators_test

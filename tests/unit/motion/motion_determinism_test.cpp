@@ -10,8 +10,7 @@
 #include "support/bodies.hpp"
 #include "support/golden_motion.hpp"
 
-namespace supple {
-namespace {
+namespace supple::motion_determinism_test {
 
 TEST(MotionThreads, MakeNoDifference) {
   const TriangleMesh cloth = make_cloth(50, 50, 5, 5);
@@ -49,5 +48,4 @@ TEST(MotionGoldenHash, IsTheSameEverywhere) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::motion_determinism_test

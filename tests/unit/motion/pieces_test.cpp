@@ -10,8 +10,7 @@
 #include "supple/models.hpp"
 #include "supple/motion.hpp"
 
-namespace supple {
-namespace {
+namespace supple::pieces_test {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
@@ -93,5 +92,4 @@ TEST(Pieces, OfAFishStayTogetherWhenTheyAreConnected) {
   EXPECT_GT(length_after(false), 2);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::pieces_test

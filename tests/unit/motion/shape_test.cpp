@@ -5,8 +5,7 @@
 #include "supple/error.hpp"
 #include "support/bodies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::shape_test {
 
 /// The largest and the smallest strain of an edge.
 struct Strains {
@@ -217,5 +216,4 @@ TEST(PlasticFlow, TakesAreasAlong) {
   EXPECT_GT(area_after_pull(0.1), 1.1);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::shape_test

@@ -6,8 +6,7 @@
 #include "supple/models.hpp"
 #include "supple/motion.hpp"
 
-namespace supple {
-namespace {
+namespace supple::undo_step_test {
 
 struct State {
   std::vector<Vec3d> positions, velocities;
@@ -85,5 +84,4 @@ TEST(UndoStep, RefusesWhenThereIsNoStep) {
   EXPECT_THROW(body.undo_step(), Error);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::undo_step_test

@@ -9,8 +9,7 @@
 #include "supple/error.hpp"
 #include "support/bodies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::volume_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -281,5 +280,4 @@ TEST(VolumeForce, HoldsUpABallThatWouldCollapse) {
   EXPECT_NEAR(part_left(1000), 0.995, 0.002);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::volume_test

@@ -16,8 +16,7 @@
 #include "support/moving_objects.hpp"
 #include "support/shared_meshes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::element_candidates_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -434,5 +433,4 @@ TEST(ElementCandidates, HoldAllContactsOfAKick) {
   expect_known_contacts("kick-43-44", "kick/43.obj", "kick/44.obj", 4535, 35197);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::element_candidates_test

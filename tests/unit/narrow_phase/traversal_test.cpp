@@ -10,8 +10,7 @@
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::traversal_test {
 
 using PairSet = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
@@ -160,5 +159,4 @@ INSTANTIATE_TEST_SUITE_P(VolumesAndShapes, TraversalTest,
                          testing::Combine(testing::ValuesIn(option_words(all_bounding_volumes)),
                                           testing::Values(0u, 2u, 16u), testing::Values(1u, 4u, 9u)));
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::traversal_test

@@ -14,8 +14,7 @@
 #include "support/soups.hpp"
 #include "support/topologies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::balanced_build_test {
 
 OctreeTopology built(const TriangleMesh& mesh, const ObjectOctreeOptions& options = {},
                      std::uint32_t threads = 1) {
@@ -182,5 +181,4 @@ TEST(BalancedBuild, SeparatesTheRestWhenOneVertexIsFarAway) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::balanced_build_test

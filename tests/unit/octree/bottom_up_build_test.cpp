@@ -12,8 +12,7 @@
 #include "support/soups.hpp"
 #include "support/topologies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::bottom_up_build_test {
 
 OctreeTopology built(const TriangleMesh& mesh, const ObjectOctreeOptions& options = {}) {
   return build_bottom_up_octree(mesh.positions, mesh.triangles, centers_of(mesh), options);
@@ -145,5 +144,4 @@ TEST(BottomUpBuild, IsTheSameOnEveryMachine) {
   EXPECT_EQ(hash, 1104377019248800686u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::bottom_up_build_test

@@ -12,8 +12,7 @@
 #include "support/instruction_sets.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::cut_kernels_test {
 
 /// Points between others, which the kernels must not change.
 class Points {
@@ -112,5 +111,4 @@ TEST(CutKernels, PartitionInOrder) {
   });
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::cut_kernels_test

@@ -7,8 +7,7 @@
 #include "support/instruction_sets.hpp"
 #include "support/moving_objects.hpp"
 
-namespace supple {
-namespace {
+namespace supple::moving_boxes_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -105,5 +104,4 @@ TEST(MovingBoxes, ValidationFindsBoxesOfOtherPositions) {
   EXPECT_NE(object.validate(), "");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::moving_boxes_test

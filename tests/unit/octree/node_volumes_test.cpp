@@ -14,8 +14,7 @@
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::node_volumes_test {
 
 /// An octree of single triangles, refitted.
 struct Built {
@@ -235,5 +234,4 @@ TEST(Polytope, EdgesAndSurfaceOfKnownShapes) {
   EXPECT_EQ(Polytope(cube).edges().size(), 24u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::node_volumes_test

@@ -9,8 +9,7 @@
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::object_octree_test {
 
 struct Soup {
   std::vector<Vec3d> positions;
@@ -290,5 +289,4 @@ TEST(ObjectOctree, StridedPositions) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::object_octree_test

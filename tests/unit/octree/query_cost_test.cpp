@@ -10,8 +10,7 @@
 #include "support/instruction_sets.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::query_cost_test {
 
 /// The octree of a triangle soup.
 struct Tree {
@@ -155,5 +154,4 @@ TEST(QueryCost, IsTheSameOnAllInstructionSetsAndThreads) {
   });
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::query_cost_test

@@ -12,8 +12,7 @@
 #include "octree/surface_elements.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::rebuild_test {
 
 /// An octree and the positions of its object, in the user's order.
 struct Tree {
@@ -134,5 +133,4 @@ TEST(Rebuild, GivesTheTreeBuiltFromThePositions) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::rebuild_test

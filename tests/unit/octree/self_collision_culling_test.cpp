@@ -13,8 +13,7 @@
 #include "supple/triangle_intersection.hpp"
 #include "support/moving_objects.hpp"
 
-namespace supple {
-namespace {
+namespace supple::self_collision_culling_test {
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -313,5 +312,4 @@ TEST(SelfCollisionCulling, CrumpledSheets) {
   EXPECT_LT(culled, children);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::self_collision_culling_test

@@ -16,8 +16,7 @@
 #include "support/soups.hpp"
 #include "support/topologies.hpp"
 
-namespace supple {
-namespace {
+namespace supple::sphere_fit_test {
 
 /// An octree of spheres at the positions of its mesh.
 struct Tree {
@@ -213,5 +212,4 @@ TEST(SphereFit, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::sphere_fit_test

@@ -7,8 +7,7 @@
 #include "octree/object_octree.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::surface_elements_test {
 
 ObjectOctree octree_of(const TriangleMesh& mesh, std::uint32_t leaf_size = 8) {
   return {
@@ -67,5 +66,4 @@ TEST(SurfaceElements, OfAnotherOctreeAreWrong) {
   EXPECT_NE(SurfaceElements(octree).validate(other), "");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::surface_elements_test

@@ -11,8 +11,7 @@
 #include "support/soups.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::damaged_recording_test {
 
 /// Modifies a valid recording through HDF5. The tests expect a message that states the damage.
 class DamagedRecording : public testing::Test {
@@ -373,5 +372,4 @@ TEST_F(DamagedRecording, ErrorsOfTheCallersOwnCallsArePrintedAsBefore) {
   EXPECT_NE(testing::internal::GetCapturedStderr(), "");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::damaged_recording_test

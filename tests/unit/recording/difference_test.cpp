@@ -9,8 +9,7 @@
 #include "support/soups.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::difference_test {
 
 Contents touching(ContactKinds mode, bool colliding_vertices = false) {
   ObjectOptions free, fixed;
@@ -364,5 +363,4 @@ TEST_P(OfPenetration, EveryFieldOfCurves) {
 }
 INSTANTIATE_TEST_SUITE_P(, OfPenetration, testing::Values(ContactKinds::penetration));
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::difference_test

@@ -15,8 +15,7 @@
 #include "support/soups.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::ranks_test {
 
 namespace fs = std::filesystem;
 
@@ -253,5 +252,4 @@ TEST_F(RecordingOfRanks, LinksLeadToObjectsOfTheSameFolder) {
   expect_error("run.h5: /objects/4", "is a soft or an external link");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::ranks_test

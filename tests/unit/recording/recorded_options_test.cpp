@@ -11,8 +11,7 @@
 #include "unit/descriptions/other_values.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::recorded_options_test {
 
 RecordingHeader header_with(const SceneOptions& scene, const ObjectOptions& object) {
   RecordingHeader header;
@@ -135,5 +134,4 @@ TEST(RecordedOptions, Version1IsRead) {
   EXPECT_EQ(now.frame(2).stats.sort_and_events_seconds, then.frame(2).stats.sort_and_events_seconds);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::recorded_options_test

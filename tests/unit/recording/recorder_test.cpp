@@ -14,8 +14,7 @@
 #include "supple/scene.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::recorder_test {
 
 TEST(Recorder, RefusesWhatDoesNotFitTheHeaderAndGoesOn) {
   const Contents contents = soups(ContactKinds::intersection, 3);
@@ -145,5 +144,4 @@ TEST(Recorder, FollowsALink) {
   EXPECT_EQ(Recording(folder / "target.h5").frame_count(), 2u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::recorder_test

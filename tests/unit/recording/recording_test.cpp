@@ -19,8 +19,7 @@
 #include "support/shared_meshes.hpp"
 #include "unit/recording/recorded_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::recording_test {
 
 void expect_equal_bits(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
   ASSERT_EQ(a.size(), b.size());
@@ -363,5 +362,4 @@ TEST(Recording, NoSuchFrameOrObject) {
   EXPECT_NE(error_of([&] { recording.positions(7, 0); }).find("no frame 7"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::recording_test

@@ -11,8 +11,7 @@
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::at_rest_test {
 
 /// Spheres; in each step some of them move and the others are at rest.
 struct World {
@@ -135,5 +134,4 @@ TEST(AtRestScene, AStepThatWasLeftByAnExceptionLeavesNothingBehind) {
   expect_as_new(world, world.scene.detect(), options);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::at_rest_test

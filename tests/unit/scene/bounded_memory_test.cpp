@@ -17,8 +17,7 @@
 #include "supple/trigonometry.hpp"
 #include "world/object/world_object.hpp"
 
-namespace supple {
-namespace {
+namespace supple::bounded_memory_test {
 
 constexpr std::uint32_t spokes = 300;
 constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
@@ -172,5 +171,4 @@ TEST(BoundedMemory, OfTheFirstIntersectionsIsLimited) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::bounded_memory_test

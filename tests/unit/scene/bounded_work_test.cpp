@@ -19,8 +19,7 @@
 #include "supple/trigonometry.hpp"
 #include "world/object/world_object.hpp"
 
-namespace supple {
-namespace {
+namespace supple::bounded_work_test {
 
 /// One object as searches see it.
 class Searched {
@@ -397,5 +396,4 @@ TEST(FarObjects, HaveAnInfiniteDistanceWhereNoDoubleHoldsIt) {
   EXPECT_TRUE(scene.verify_distances(largest, {}).empty());
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::bounded_work_test

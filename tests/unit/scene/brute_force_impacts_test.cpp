@@ -12,8 +12,7 @@
 #include "supple/scene.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::brute_force_impacts_test {
 
 using Fault = ContinuousDifference::Fault;
 
@@ -102,5 +101,4 @@ TEST_P(BruteForceImpacts, KnowsTheSeparation) {
 
 INSTANTIATE_TEST_SUITE_P(Separations, BruteForceImpacts, testing::Values(0.0, 0.001, 0.05));
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::brute_force_impacts_test

@@ -10,8 +10,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 
-namespace supple {
-namespace {
+namespace supple::brute_force_penetrations_test {
 
 class WrongPenetrations : public testing::Test {
  protected:
@@ -93,5 +92,4 @@ TEST_F(WrongPenetrations, PartsAreCompared) {
   expect_one(0, Fault::missed);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::brute_force_penetrations_test

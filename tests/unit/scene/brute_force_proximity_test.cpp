@@ -8,11 +8,10 @@
 #include <cmath>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::brute_force_proximity_test {
 
 /// Elements whose sides are parallel up to rounding, or that are tiny: their normals are noise.
 TEST(ClearlyApart, IsNeverTrueWithinReach) {
@@ -50,5 +49,4 @@ TEST(ClearlyApart, IsNeverTrueWithinReach) {
   EXPECT_GT(within, rounds / 10);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::brute_force_proximity_test

@@ -10,8 +10,7 @@
 
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::bucket_sort_test {
 
 struct Item {
   std::uint32_t group = 0, id = 0, rest = 0;
@@ -66,5 +65,4 @@ TEST(BucketSort, OfOneKeyWithVeryMany) {
   expect_sorted(items, order);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::bucket_sort_test

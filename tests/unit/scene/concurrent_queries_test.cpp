@@ -12,8 +12,7 @@
 #include "supple/scene.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::concurrent_queries_test {
 
 /// The answers to all kinds of queries.
 struct Answers {
@@ -97,5 +96,4 @@ TEST(ConcurrentSceneQueries, GiveTheAnswersOfOneThread) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::concurrent_queries_test

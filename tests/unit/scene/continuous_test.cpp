@@ -16,8 +16,7 @@
 #include "support/instruction_sets.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::continuous_test {
 
 using Vertices = std::vector<Vec3d>;
 
@@ -358,5 +357,4 @@ TEST(ContinuousErrors, SayWhatToDo) {
   EXPECT_NE(message_of([&] { scene.verify(); }).find("call detect first"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::continuous_test

@@ -15,8 +15,7 @@
 #include "supple/scene.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::crossing_pairs_test {
 
 constexpr ContactKinds proximity = ContactKinds::proximity;
 using enum FeatureKind;
@@ -185,5 +184,4 @@ TEST(CrossingPairs, AreThePointsOfIntersections) {
   EXPECT_EQ(of_crossings, of_contacts);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::crossing_pairs_test

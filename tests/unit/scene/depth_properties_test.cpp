@@ -15,8 +15,7 @@
 #include "support/depth_properties.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::depth_properties_test {
 
 std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
   const char* const text = std::getenv(variable);
@@ -83,5 +82,4 @@ TEST(DepthProperties, OfSolidsThatOnlyTouch) {
   for (const int curves : curves_of_touching) EXPECT_GT(curves, 10);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::depth_properties_test

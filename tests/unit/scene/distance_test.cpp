@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
@@ -20,8 +20,7 @@
 #include "support/random.hpp"
 #include "verify/brute_force_proximity.hpp"
 
-namespace supple {
-namespace {
+namespace supple::distance_test {
 
 /// Triangles with a vertex that is not finite are no part of a surface; their vertices are elements only of
 /// other triangles.
@@ -280,5 +279,4 @@ TEST(Distance, OfAllPairsWithinADistance) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::distance_test

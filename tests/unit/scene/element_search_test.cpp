@@ -18,8 +18,7 @@
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::element_search_test {
 
 constexpr ContactKinds continuous = ContactKinds::continuous;
 // Few enough for algebra, which is slow in builds with sanitizers.
@@ -292,5 +291,4 @@ TEST(SkipParting, KeepsElementsThatComeNearerLater) {
   EXPECT_GT(found(0.04), 0u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::element_search_test

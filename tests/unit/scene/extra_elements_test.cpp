@@ -13,8 +13,7 @@
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::extra_elements_test {
 
 using Edges = std::vector<std::array<std::uint32_t, 2>>;
 constexpr ContactKinds both = ContactKinds::continuous | ContactKinds::proximity;
@@ -182,5 +181,4 @@ TEST(ExtraElements, RefuseIdsThatAreNoVertices) {
   EXPECT_NO_THROW(add({.same_vertex = {0, 0}, .edges = {{0, 1}}}));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::extra_elements_test

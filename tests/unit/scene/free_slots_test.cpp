@@ -10,8 +10,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 
-namespace supple {
-namespace {
+namespace supple::free_slots_test {
 
 class FreeSlots : public testing::TestWithParam<std::vector<std::uint32_t>> {
  protected:
@@ -105,5 +104,4 @@ INSTANTIATE_TEST_SUITE_P(All, FreeSlots,
                            return "Without" + name;
                          });
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::free_slots_test

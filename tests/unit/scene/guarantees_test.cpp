@@ -13,8 +13,7 @@
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::guarantees_test {
 
 /// A vertex over a floor that a solver moves down by 1 in each frame. Once it is near, a constraint keeps
 /// `distance_of` the present distance. Returns the distance after some frames.
@@ -165,5 +164,4 @@ TEST(GuaranteesForSolvers, OnlyElementsNameParallelEdges) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::guarantees_test

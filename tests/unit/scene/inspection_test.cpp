@@ -21,8 +21,7 @@
 #include "support/option_word.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::inspection_test {
 
 constexpr double smallest = 0x1p-1060;  // the rounding error of denormals
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -725,5 +724,4 @@ TEST(InspectionOfScenes, InertTrianglesAreToldFromOthers) {
   EXPECT_TRUE(some_inert);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::inspection_test

@@ -15,8 +15,7 @@
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
 
-namespace supple {
-namespace {
+namespace supple::manifold_test {
 
 constexpr SceneOptions touching{.contacts = ContactKinds::penetration, .manifolds = true};
 constexpr SceneOptions near{.contacts = ContactKinds::proximity, .manifolds = true};
@@ -467,5 +466,4 @@ TEST(Manifold, TakesCoordinatesOfAnySize) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::manifold_test

@@ -19,8 +19,7 @@
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::method_of_2007_test {
 
 /// The volumes and descents that `lazy_refit` allows.
 std::vector<SceneOptions> lazy_options() {
@@ -324,5 +323,4 @@ TEST(MethodOf2007, FindsTheContactsOfTheDefaults) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::method_of_2007_test

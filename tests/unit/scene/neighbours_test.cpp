@@ -15,8 +15,7 @@
 #include "support/random.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::neighbours_test {
 
 const ObjectOptions exact_neighbours{.self_collision = true, .neighbours = Neighbours::exact};
 
@@ -120,5 +119,4 @@ TEST(Neighbours, AreTheOnlyAdditions) {
   EXPECT_EQ(pairs_of(with.detect()), all);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::neighbours_test

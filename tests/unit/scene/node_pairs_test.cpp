@@ -16,8 +16,7 @@
 #include "support/configurations.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::node_pairs_test {
 
 /// (level of the list, k and h of a, k and h of b).
 using NamedPair = std::array<std::uint64_t, 5>;
@@ -333,5 +332,4 @@ TEST(SceneRegions, OfAnObjectAreTheLeavesThatItsBoxTouches) {
   EXPECT_THROW(inspector.regions(ids[0]), Error);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::node_pairs_test

@@ -11,8 +11,7 @@
 #include "supple/scene.hpp"
 #include "supple/simulation.hpp"
 
-namespace supple {
-namespace {
+namespace supple::observer_test {
 
 TEST(Observer, SeesEachResultOfDetect) {
   Scene scene;
@@ -77,5 +76,4 @@ TEST(OptionsOfObject, HaveLaterChanges) {
   EXPECT_THROW(scene.options(ball), Error);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::observer_test

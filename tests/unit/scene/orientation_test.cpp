@@ -13,8 +13,7 @@
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
 
-namespace supple {
-namespace {
+namespace supple::orientation_test {
 
 constexpr SceneOptions penetration{.contacts = ContactKinds::penetration, .curves = true};
 
@@ -211,5 +210,4 @@ TEST(Orientation, RefusesSingularMatricesOfSolids) {
   EXPECT_EQ(scene.position(a, 0), crate.positions[0]);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::orientation_test

@@ -9,15 +9,14 @@
 #include <optional>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::overlaps_test {
 
 using Point = std::array<Rational, 3>;
 
@@ -152,5 +151,4 @@ TEST(SignedDistance, IsNegativeInside) {
   EXPECT_THROW(scene.closest(points, found, {.signed_distance = true}), Error);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::overlaps_test

@@ -8,8 +8,7 @@
 
 #include "unit/broad_phase/volume_scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::pair_cache_test {
 
 using Pairs = std::vector<ObjectPair>;
 
@@ -105,5 +104,4 @@ TEST(PairCache, EveryBeginHasOneEnd) {
   EXPECT_TRUE(open.empty());
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::pair_cache_test

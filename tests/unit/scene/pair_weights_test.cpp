@@ -14,8 +14,7 @@
 #include "supple/scene.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::pair_weights_test {
 
 /// The sum of the weights and of weight times position, and the objects of the vertices.
 struct Sums {
@@ -195,5 +194,4 @@ TEST(Quaternion, RefusesZeroAndWhatIsNotFinite) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::pair_weights_test

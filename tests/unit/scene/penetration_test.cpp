@@ -19,8 +19,7 @@
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::penetration_test {
 
 constexpr SceneOptions penetration{.contacts = ContactKinds::penetration, .curves = true};
 
@@ -680,5 +679,4 @@ TEST(Penetration, IsTheSameForAnyNumberOfThreads) {
   for (const std::uint32_t threads : {2u, 3u}) EXPECT_EQ(hash_with(threads), hash);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::penetration_test

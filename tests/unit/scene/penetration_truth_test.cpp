@@ -13,8 +13,7 @@
 #include "supple/scene.hpp"
 #include "support/proximity_truth.hpp"
 
-namespace supple {
-namespace {
+namespace supple::penetration_truth_test {
 
 using nlohmann::json;
 
@@ -86,5 +85,4 @@ TEST_F(PenetrationTruth, Curves) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::penetration_truth_test

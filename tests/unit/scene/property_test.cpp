@@ -11,8 +11,7 @@
 #include "support/instruction_sets.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::property_test {
 
 class SceneProperties : public testing::TestWithParam<Family> {};
 
@@ -131,5 +130,4 @@ TEST(SceneGoldenHash, EveryInstructionSetTestsTheSameVolumes) {
 INSTANTIATE_TEST_SUITE_P(Families, SceneProperties, testing::ValuesIn(hard_families()),
                          [](const auto& family) { return family.param.name; });
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::property_test

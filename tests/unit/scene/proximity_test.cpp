@@ -12,8 +12,7 @@
 #include "support/golden_scenes.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::proximity_test {
 
 constexpr ContactKinds proximity = ContactKinds::proximity;
 
@@ -230,5 +229,4 @@ TEST(ProximityPairs, RefuseMarginsOutOfRange) {
   EXPECT_FALSE(scene.detect().proximity_pairs.empty());
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::proximity_test

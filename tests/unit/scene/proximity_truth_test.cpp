@@ -16,8 +16,7 @@
 #include "supple/scene.hpp"
 #include "support/proximity_truth.hpp"
 
-namespace supple {
-namespace {
+namespace supple::proximity_truth_test {
 
 using nlohmann::json;
 
@@ -151,5 +150,4 @@ TEST_F(ProximityTruth, EveryDistanceOfTheListedCases) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::proximity_truth_test

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
@@ -19,8 +19,7 @@
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::queries_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using RationalVector = std::array<Rational, 3>;
@@ -625,5 +624,4 @@ TEST(Cast, WithDirectionsOfExtremeSizes) {
   for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(hits[i]) << i;
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::queries_test

@@ -13,8 +13,7 @@
 #include "supple/scene.hpp"
 #include "support/proximity_truth.hpp"
 
-namespace supple {
-namespace {
+namespace supple::queries_truth_test {
 
 using nlohmann::json;
 
@@ -140,5 +139,4 @@ TEST_F(QueriesTruth, FirstTrianglesOfRays) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::queries_truth_test

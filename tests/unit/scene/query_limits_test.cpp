@@ -9,8 +9,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 
-namespace supple {
-namespace {
+namespace supple::query_limits_test {
 
 /// A ball and a box that is near.
 struct Objects {
@@ -69,5 +68,4 @@ TEST(StoppedQuery, OfVerifySaysSo) {
   EXPECT_EQ(report.triangle_pairs_checked, 0u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::query_limits_test

@@ -17,8 +17,7 @@
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::random_operations_test {
 
 /// The active pairs according to the events so far.
 class EventLedger {
@@ -181,5 +180,4 @@ INSTANTIATE_TEST_SUITE_P(OtherVolumes, RandomOperations,
                                           testing::Values(BroadPhaseMethod::automatic)),
                          configuration_name);
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::random_operations_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace supple {
-namespace {
+namespace supple::rebuild_policy_test {
 
 /// The number of steps, with one query each, until the policy requests a rebuild.
 int steps_until_rebuild(RebuildPolicy& policy) {
@@ -80,5 +79,4 @@ TEST(RebuildPolicy, DoesNothingWhenDisabledOrUnknown) {
   EXPECT_TRUE(policy.is_degraded());
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::rebuild_policy_test

@@ -12,8 +12,7 @@
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::rebuild_test {
 
 /// Objects whose triangles drift in random directions inside a cube.
 class Drift {
@@ -370,5 +369,4 @@ TEST(SceneRebuild, ObjectsAtRestAreRebuiltForQueriesOfOthers) {
   EXPECT_TRUE(std::equal(again.begin(), again.end(), before.begin(), before.end()));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::rebuild_test

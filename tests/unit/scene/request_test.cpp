@@ -18,8 +18,7 @@
 #include "support/hard_scenes.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::request_test {
 
 constexpr ContactKinds both = ContactKinds::intersection | ContactKinds::continuous;
 
@@ -550,5 +549,4 @@ TEST(Stop, AtAnyTimeLeavesTheNextStepAsItWouldBe) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::request_test

@@ -18,8 +18,7 @@
 #include "supple/scene.hpp"
 #include "support/option_word.hpp"
 
-namespace supple {
-namespace {
+namespace supple::result_spans_test {
 
 /// Spans with the bytes that they had.
 class HeldSpans {
@@ -196,5 +195,4 @@ INSTANTIATE_TEST_SUITE_P(Listings, ResultSpans,
                            return listing.param == ContinuousListing::all ? "All" : "First";
                          });
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::result_spans_test

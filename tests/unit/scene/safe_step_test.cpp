@@ -13,8 +13,7 @@
 #include "support/random.hpp"
 #include "verify/brute_force_elements.hpp"
 
-namespace supple {
-namespace {
+namespace supple::safe_step_test {
 
 struct Path {
   TriangleMesh mesh;
@@ -588,5 +587,4 @@ TEST(SafeStep, RefusesSharesOutOfRange) {
     EXPECT_THROW(scene.collision_free_step({.keep = keep}), Error);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::safe_step_test

@@ -11,14 +11,13 @@
 #include "support/kept_distance.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::safe_step_truth_test {
 
-using testing::check_step;
-using testing::MovingPair;
-using testing::StepFault;
-using testing::touch_at_start;
-using testing::TwoElements;
+using truth::check_step;
+using truth::MovingPair;
+using truth::StepFault;
+using truth::touch_at_start;
+using truth::TwoElements;
 
 TwoElements random_elements(RandomNumbers& random) {
   TwoElements e;
@@ -73,9 +72,9 @@ TEST(SafeStepTruth, IsExactForAllShares) {
       for (const double beyond : {1.0, 0x1p-2, 0x1p-18, 0x1p-30, 0x1p-51}) {
         const double step =
             falling_point(separation + beyond).scene(separation).collision_free_step({.keep = keep}).step;
-        const testing::Rational exact = (1 - testing::Rational(keep)) * testing::Rational(beyond);
-        EXPECT_LE(testing::Rational(step), exact) << keep << " " << separation << " " << beyond;
-        EXPECT_GE(testing::Rational(step), exact * (1 - testing::Rational(0x1p-18)))
+        const truth::Rational exact = (1 - truth::Rational(keep)) * truth::Rational(beyond);
+        EXPECT_LE(truth::Rational(step), exact) << keep << " " << separation << " " << beyond;
+        EXPECT_GE(truth::Rational(step), exact * (1 - truth::Rational(0x1p-18)))
             << keep << " " << separation << " " << beyond;
       }
     }
@@ -87,9 +86,9 @@ TEST(SafeStepTruth, IsExactWithinTheSeparation) {
   for (const double keep : {0.25, 0.5, 0.9}) {
     for (const double height : {1.0, 0.75, 0x1p-30}) {
       const double step = falling_point(height, 2).scene(1).collision_free_step({.keep = keep}).step;
-      const testing::Rational exact = (1 - testing::Rational(keep)) * testing::Rational(height) / 2;
-      EXPECT_LE(testing::Rational(step), exact) << keep << " " << height;
-      EXPECT_GE(testing::Rational(step), exact * (1 - testing::Rational(0x1p-18))) << keep << " " << height;
+      const truth::Rational exact = (1 - truth::Rational(keep)) * truth::Rational(height) / 2;
+      EXPECT_LE(truth::Rational(step), exact) << keep << " " << height;
+      EXPECT_GE(truth::Rational(step), exact * (1 - truth::Rational(0x1p-18))) << keep << " " << height;
     }
   }
 }
@@ -129,5 +128,4 @@ TEST(SafeStepTruth, IsExactForCoordinatesOfAnySize) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::safe_step_truth_test

@@ -12,8 +12,7 @@
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::scene_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -377,5 +376,4 @@ TEST(Scene, ErrorsSayWhatWhereAndHowToMend) {
       "remove: object 0 (generation 0) is not in the scene; it was removed or belongs to another scene");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::scene_test

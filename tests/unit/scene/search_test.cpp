@@ -10,8 +10,7 @@
 #include "supple/scene.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::search_test {
 
 constexpr ContactKinds three_kinds =
     ContactKinds::intersection | ContactKinds::continuous | ContactKinds::proximity;
@@ -159,5 +158,4 @@ TEST(SceneSearch, SeesRemovedAndAddedObjects) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::search_test

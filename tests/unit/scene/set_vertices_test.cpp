@@ -19,8 +19,7 @@
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::set_vertices_test {
 
 template <class Element>
 bool same_bits(const Element* a, const Element* b, std::size_t count) {
@@ -253,5 +252,4 @@ TEST(SetVertices, ReportsWhatIsWrong) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::set_vertices_test

@@ -20,8 +20,7 @@
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
-namespace supple {
-namespace {
+namespace supple::share_positions_test {
 
 using ContactKeys = std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>>;
 
@@ -220,5 +219,4 @@ TEST(SharePositions, ChecksWhatItIsGiven) {
   EXPECT_THROW(scene.share_positions(id, enough), Error);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::share_positions_test

@@ -14,8 +14,7 @@
 #include "support/random.hpp"
 #include "world/world.hpp"
 
-namespace supple {
-namespace {
+namespace supple::step_work_test {
 
 struct Body {
   TriangleMesh mesh;
@@ -103,5 +102,4 @@ TEST(StepWork, OfDistantObjectsIsThatOfNodes) {
   for (const Work& work : work_of(bodies, 1)) EXPECT_LT(work.pairs, 1000u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::step_work_test

@@ -13,8 +13,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 
-namespace supple {
-namespace {
+namespace supple::throwing_functions_test {
 
 constexpr int never = 1 << 30;
 
@@ -153,5 +152,4 @@ TEST(ThrowingFunctions, AnObserverThatThrowsKeepsTheResult) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::throwing_functions_test

@@ -13,8 +13,7 @@
 #include "supple/scene.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::touching_manifolds_test {
 
 constexpr Vec3d up{0, 1, 0};
 
@@ -266,5 +265,4 @@ TEST(TouchingManifolds, OfACurveHaveItsDeepestVertex) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::touching_manifolds_test

@@ -11,8 +11,7 @@
 #include "supple/scene.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::touching_step_test {
 
 struct Moving {
   TriangleMesh mesh;
@@ -268,5 +267,4 @@ TEST(TouchingSteps, OfRandomBoxesEndWhereTheyOverlap) {
   EXPECT_GT(against, 100);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::touching_step_test

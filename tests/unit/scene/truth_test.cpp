@@ -18,8 +18,7 @@
 #include "support/shared_meshes.hpp"
 #include "support/truth_data.hpp"
 
-namespace supple {
-namespace {
+namespace supple::truth_test {
 
 using nlohmann::json;
 
@@ -199,5 +198,4 @@ TEST_F(Truth, SafeStepsOfRealFramesAlwaysAdvance) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::truth_test

@@ -10,8 +10,7 @@
 #include "supple/scene.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::undecided_test {
 
 using Vertices = std::vector<Vec3d>;
 
@@ -84,5 +83,4 @@ TEST(Undecided, ContactsAreReportedAndNeverMissed) {
   EXPECT_GT(not_touching, 0u) << "no undecided pair was reported that does not touch";
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::undecided_test

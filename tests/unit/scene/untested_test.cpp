@@ -12,8 +12,7 @@
 #include "supple/scene.hpp"
 #include "support/random.hpp"
 
-namespace supple {
-namespace {
+namespace supple::untested_test {
 
 using enum NothingToTest;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -234,5 +233,4 @@ TEST(Untested, EqualsTheRulesOfPairs) {
   EXPECT_GT(untested, 500);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::untested_test

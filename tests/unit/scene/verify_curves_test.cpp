@@ -8,8 +8,7 @@
 #include "supple/scene.hpp"
 #include "verify/brute_force_penetrations.hpp"
 
-namespace supple {
-namespace {
+namespace supple::verify_curves_test {
 
 PlainObject plain(const TriangleMesh& mesh) {
   return {mesh.positions, mesh.triangles};
@@ -53,5 +52,4 @@ TEST(VerifyCurves, FindsWrongDepthsAndNormals) {
   EXPECT_GT(faults_of(up, -0.125), 0u);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::verify_curves_test

@@ -10,8 +10,7 @@
 #include "supple/scene.hpp"
 #include "verify/brute_force_penetrations.hpp"
 
-namespace supple {
-namespace {
+namespace supple::verify_manifolds_test {
 
 TEST(VerifyManifolds, FindsEachFault) {
   using Fault = std::function<void(Manifold&, std::vector<ManifoldPoint>&)>;
@@ -67,5 +66,4 @@ TEST(VerifyManifolds, FindsEachFault) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::verify_manifolds_test

@@ -18,8 +18,7 @@
 #include "support/random.hpp"
 #include "support/shared_meshes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::verify_queries_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -537,5 +536,4 @@ TEST(VerifyQueries, FindNothingWrongAmongTheSmallestNumbers) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::verify_queries_test

@@ -14,8 +14,7 @@
 #include "supple/scene.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::views_test {
 
 const std::vector<Vec3d> four_points{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}};
 
@@ -282,5 +281,4 @@ TEST(VerticesOf, ContinuousContactsAreWeightedByTheirBarycentricCoordinates) {
   EXPECT_TRUE(kinds[0] && kinds[1] && kinds[2]);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::views_test

@@ -11,8 +11,7 @@
 #include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
 
-namespace supple {
-namespace {
+namespace supple::weld_test {
 
 /// Each triangle has its own vertices.
 TriangleMesh split(const TriangleMesh& mesh) {
@@ -107,5 +106,4 @@ TEST(Weld, ByAMapIsThatOfEqualPositions) {
   EXPECT_EQ(std::vector(pairs.begin(), pairs.end()), std::vector(expected.begin(), expected.end()));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::weld_test

@@ -7,8 +7,7 @@
 #include "supple/models.hpp"
 #include "supple/simulation.hpp"
 
-namespace supple {
-namespace {
+namespace supple::contact_response_test {
 
 TriangleMesh placed(TriangleMesh mesh, double size, Vec3d at) {
   for (Vec3d& p : mesh.positions) p = size * p + at;
@@ -321,5 +320,4 @@ TEST(ContactResponse, SurvivesRemovalAndTeleports) {
   EXPECT_LT(norm(simulation.body(second)->mean_velocity() - Vec3d{1, 0, 0}), 1e-12);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::contact_response_test

@@ -14,8 +14,7 @@
 #include "geometry/vector.hpp"
 #include "supple/models.hpp"
 
-namespace supple {
-namespace {
+namespace supple::deforming_forces_test {
 
 std::vector<Vec3d> constant_forces(const TriangleMesh& mesh, double size) {
   const MassSpringMotion motion{.random_force = size, .deform_seconds = 1};
@@ -156,5 +155,4 @@ TEST(DeformingForces, ChangeInAnyTime) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::deforming_forces_test

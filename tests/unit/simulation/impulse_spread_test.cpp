@@ -4,8 +4,7 @@
 
 #include "supple/models.hpp"
 
-namespace supple {
-namespace {
+namespace supple::impulse_spread_test {
 
 double sum_of(std::span<const ImpulseSpread::Share> shares) {
   double sum = 0;
@@ -80,5 +79,4 @@ TEST(ImpulseSpread, HasTheSpringsOfCopiesOnly) {
   EXPECT_FALSE(spread.has_springs_of(ImpulseSpread(make_icosphere(4), springs(100), 0.01)));
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::impulse_spread_test

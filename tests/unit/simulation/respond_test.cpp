@@ -11,8 +11,7 @@
 #include "supple/models.hpp"
 #include "supple/response.hpp"
 
-namespace supple {
-namespace {
+namespace supple::respond_test {
 
 constexpr double dt = 0.01;
 constexpr ContactResponse thick{.thickness = 0.01};
@@ -221,5 +220,4 @@ TEST(Respond, RejectsUnusableInput) {
   EXPECT_NE(message(one, dt, thick).find("vertex 2"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::respond_test

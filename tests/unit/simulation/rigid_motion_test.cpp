@@ -10,8 +10,7 @@
 #include "supple/models.hpp"
 #include "supple/simulation.hpp"
 
-namespace supple {
-namespace {
+namespace supple::rigid_motion_test {
 
 using Points = std::vector<Vec3d>;
 
@@ -301,5 +300,4 @@ TEST(RigidMotion, RefusesOptionsOutOfTheirRange) {
   EXPECT_EQ(message({}), "");
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::rigid_motion_test

@@ -10,8 +10,7 @@
 #include "supple/simulation.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::set_detection_test {
 
 TriangleMesh ball(Vec3d at) {
   TriangleMesh mesh = make_icosphere(3);
@@ -101,5 +100,4 @@ TEST(SetDetection, AFailureChangesNothing) {
   EXPECT_THROW(room.simulation.set_detection({}, room.objects), Error);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::set_detection_test

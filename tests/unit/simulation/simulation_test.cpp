@@ -16,8 +16,7 @@
 #include "supple/trigonometry.hpp"
 #include "support/scenes.hpp"
 
-namespace supple {
-namespace {
+namespace supple::simulation_test {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -655,5 +654,4 @@ TEST(Simulation, FusedRefitFindsTheSame) {
   }
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::simulation_test

@@ -7,8 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace supple {
-namespace {
+namespace supple::wave_motion_test {
 
 const WaveMotion motion{{0.3, -0.2, 0.1}, 0.05, 0.7, 2.5, 42};
 const std::vector<Vec3d> rest{{0, 0, 0}, {0.25, -0.5, 0.125}, {-0.75, 0.3, 0.9}};
@@ -66,5 +65,4 @@ TEST(WaveMotion, ABadVertexMovesNothingElse) {
   EXPECT_EQ(positions[2], swayed(motion, {}, 1.3)[2]);
 }
 
-}  // namespace
-}  // namespace supple
+}  // namespace supple::wave_motion_test

@@ -15,8 +15,7 @@
 
 #include "supple/error.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::access_test {
 
 TEST(Access, TokensAreLongAndNeverTheSame) {
   std::set<std::string> tokens;
@@ -163,5 +162,4 @@ TEST(Access, PagesOfOtherSitesAreTold) {
     EXPECT_FALSE(Access::is_own_origin(origin, "127.0.0.1:8080")) << origin;
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::access_test

@@ -14,8 +14,7 @@
 #include "support/eventually.hpp"
 #include "unit/viewer/page_client.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::attach_test {
 
 using Kind = ViewerMessage::Kind;
 
@@ -180,5 +179,4 @@ TEST_F(Attach, WrongOptions) {
   EXPECT_THROW(attach(scene_, {.address = "nowhere"}), Error);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::attach_test

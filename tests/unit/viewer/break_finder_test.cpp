@@ -10,8 +10,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::break_finder_test {
 
 /// Three boxes in a row, which do not touch.
 class Breaks : public testing::Test {
@@ -123,5 +122,4 @@ TEST_F(Breaks, VertexThatIsNotFinite) {
   EXPECT_FALSE(found->point);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::break_finder_test

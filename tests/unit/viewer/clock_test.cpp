@@ -8,8 +8,7 @@
 
 #include "support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::clock_test {
 
 /// The step that a session reaches in ten short periods, after one period of `seconds`.
 std::uint64_t step_after(double seconds) {
@@ -41,5 +40,4 @@ TEST(SessionClock, LongTimesAreShortPauses) {
     EXPECT_EQ(step_after(seconds), after_pause) << seconds;
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::clock_test

@@ -8,8 +8,7 @@
 #include "supple/error.hpp"
 #include "unit/viewer/watched_program.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::gate_pause_test {
 
 TEST_F(WatchedProgram, PauseStepAndContinue) {
   attach();
@@ -148,5 +147,4 @@ TEST_F(WatchedProgram, WaitShowsTheLastStepUntilThePageContinues) {
   EXPECT_TRUE(until([&] { return !is_running_; }));
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::gate_pause_test

@@ -12,8 +12,7 @@
 
 #include "unit/viewer/watched_program.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::gate_test {
 
 TEST_F(WatchedProgram, DoesNotWaitForAPageWithoutCredit) {
   attach();
@@ -311,5 +310,4 @@ TEST_F(WatchedProgram, SaysHowLongAgoTheLastStepWas) {
   EXPECT_EQ(answers_[0].json["seconds_since_step"], 12.5);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::gate_test

@@ -13,8 +13,7 @@
 #include "session/settings.hpp"
 #include "unit/descriptions/other_values.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::packed_scene_test {
 
 /// A scene in which all options differ from their defaults, with a wave, a mass-spring and a static object.
 SceneView rich_scene() {
@@ -266,5 +265,4 @@ TEST(PackedScene, DamagedBytesNeverDoHarm) {
   }
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::packed_scene_test

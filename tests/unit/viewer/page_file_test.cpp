@@ -16,8 +16,7 @@
 #include "supple/error.hpp"
 #include "support/random.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::page_file_test {
 
 namespace fs = std::filesystem;
 
@@ -156,5 +155,4 @@ TEST_F(ReplaceFile, LeavesNothingWhereItCannotWrite) {
   EXPECT_EQ(count_files(), 0u);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::page_file_test

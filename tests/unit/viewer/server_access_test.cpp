@@ -14,8 +14,7 @@
 #include "support/eventually.hpp"
 #include "unit/viewer/served_session.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::server_access_test {
 
 TEST_F(ViewerServer, PageNeedsTheToken) {
   start();
@@ -167,5 +166,4 @@ TEST(ViewerServerOptions, SaysWhatIsWrongWithAnAddress) {
   EXPECT_THROW(is_loopback("localhost:80"), Error);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::server_access_test

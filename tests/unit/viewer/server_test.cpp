@@ -18,8 +18,7 @@
 #include "support/eventually.hpp"
 #include "unit/viewer/served_session.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::server_test {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
@@ -334,5 +333,4 @@ TEST_F(ViewerServer, LargeFramesArriveWhole) {
   }
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::server_test

@@ -7,8 +7,7 @@
 
 #include "../../support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_commands_test {
 
 TEST(ViewerCommands, WhatIsNotUnderstoodIsAFailureAndDoesNothing) {
   TestPage page(three_balls());
@@ -167,5 +166,4 @@ TEST(ViewerCommands, ReadsVerticesTrianglesAndObjects) {
   EXPECT_EQ(object["bounds"][1][1], highest);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_commands_test

@@ -11,8 +11,7 @@
 #include "../../support/viewer_page.hpp"
 #include "supple/queries.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_fields_test {
 
 constexpr std::uint32_t values_tag = 61, vectors_tag = 62;
 using Vector = std::array<float, 3>;
@@ -331,5 +330,4 @@ TEST(ViewerFields, ReadAnswersTheValueInDouble) {
   EXPECT_NEAR(vector[0].get<double>(), 0.25 / 3, 1e-12);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_fields_test

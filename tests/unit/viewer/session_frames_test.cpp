@@ -9,8 +9,7 @@
 
 #include "../../support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_frames_test {
 
 /// A value of the last step's statistics, found by its name.
 double statistic(const ViewerMessage& scene, const ViewerMessage& frame, const std::string& name) {
@@ -341,5 +340,4 @@ TEST(ViewerFrames, SayWhatWasNotTested) {
   EXPECT_EQ(page.frame().json["untested"], (Json{{{"kind", "intersection"}, {"reason", "one_object"}}}));
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_frames_test

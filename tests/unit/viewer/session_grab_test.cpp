@@ -7,8 +7,7 @@
 
 #include "../../support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_grab_test {
 
 /// The vertex with the largest x.
 std::uint32_t foremost(const TriangleMesh& mesh) {
@@ -361,5 +360,4 @@ TEST(ViewerGrab, ContinuousContactsSeeWhereAThingWasBentTo) {
   EXPECT_TRUE(frame.has(32, 0));
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_grab_test

@@ -7,8 +7,7 @@
 
 #include "../../support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_history_test {
 
 constexpr double bytes_of_ball = 92 * sizeof(Vec3d);
 
@@ -222,5 +221,4 @@ TEST(ViewerHistory, APageThatComesAgainFindsThePastItLookedAt) {
   for (std::uint32_t object = 0; object < 3; ++object) EXPECT_TRUE(frame.has(32, object));
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_history_test

@@ -12,8 +12,7 @@
 #include "../../support/viewer_page.hpp"
 #include "supple/inspection.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_layers_test {
 
 /// Balls that touch or nearly touch. One of them waves, and one has self-collision.
 SceneView crowd(BoundingVolume volume = BoundingVolume::aabb) {
@@ -336,5 +335,4 @@ TEST(ViewerLayers, ExplainsWhatTheLibraryExplains) {
   }
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_layers_test

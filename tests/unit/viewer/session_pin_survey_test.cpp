@@ -16,8 +16,7 @@
 #include "supple/error.hpp"
 #include "support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_pin_survey_test {
 
 constexpr std::uint32_t pin_rows = 63;
 
@@ -219,5 +218,4 @@ TEST(ViewerPinSurvey, SaysWhichFrameItCannotRead) {
   EXPECT_EQ(survey.rows[1].size(), 7u);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_pin_survey_test

@@ -10,8 +10,7 @@
 
 #include "../../support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_pins_test {
 
 constexpr std::uint32_t pin_rows = 63;
 
@@ -251,5 +250,4 @@ TEST(ViewerPins, AnInvalidPinChangesNothing) {
   EXPECT_TRUE(page.frame_after_steps(1).has(pin_rows, 1));
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_pins_test

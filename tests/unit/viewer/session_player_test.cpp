@@ -3,8 +3,7 @@
 #include "../../support/viewer_page.hpp"
 #include "session/sources/player.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_player_test {
 
 TEST(ViewerPlayer, KeepsUpWithTimeAndGivesUpWhatItCannotCatchUpWith) {
   TestPage page(three_balls());
@@ -84,5 +83,4 @@ TEST(ViewerPlayer, ObjectsWithoutMotionArePaused) {
   EXPECT_GT(frame.section(34).count, 0u);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_player_test

@@ -10,8 +10,7 @@
 #include "../../support/viewer_page.hpp"
 #include "session/packed/packed_scene.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_recording_test {
 
 /// Frames in memory; some of them may be damaged.
 struct StoredFrames : Frames {
@@ -460,5 +459,4 @@ TEST(ViewerRecording, PackedFramesAreThoseOfTheRecordingAsFloats) {
   EXPECT_THROW(packed.frames->read(60, 0, positions), Error);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_recording_test

@@ -9,8 +9,7 @@
 #include "../../support/viewer_page.hpp"
 #include "session/settings.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_settings_test {
 
 /// The settings that restart, as the scene message describes them.
 std::vector<std::string> restarting_settings(const ViewerMessage& scene) {
@@ -290,5 +289,4 @@ TEST(ViewerSettings, AFailedSetLeavesAllAsItWas) {
   EXPECT_EQ(scene.json["bounding_volume"], "aabb");
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_settings_test

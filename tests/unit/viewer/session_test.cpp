@@ -9,8 +9,7 @@
 #include "../../support/viewer_page.hpp"
 #include "session/messages/long_steps.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_test {
 
 TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
   Session unseen(three_balls());
@@ -189,5 +188,4 @@ TEST(ViewerSession, RefusesWhatAnObjectMustNotBe) {
   EXPECT_THROW(TestPage{show}, Error);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_test

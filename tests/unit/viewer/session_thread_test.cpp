@@ -11,8 +11,7 @@
 #include "supple/models.hpp"
 #include "support/eventually.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::session_thread_test {
 
 /// The thread learns at once that the first page has left and that the next one has come.
 TEST(SessionThread, TheNextPageDoesNotTakeOverThePauseOfAProgram) {
@@ -41,5 +40,4 @@ TEST(SessionThread, TheNextPageDoesNotTakeOverThePauseOfAProgram) {
   EXPECT_TRUE(eventually([&] { return gate->state().runs; }));
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::session_thread_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::slowdown_budget_test {
 
 TEST(SlowdownBudget, FirstFrameIsAtOnceAndTheNextWhenItIsEarned) {
   SlowdownBudget budget(0.25, 10);
@@ -54,5 +53,4 @@ TEST(SlowdownBudget, WithoutAShareOnlyTheFirstFrameIsShown) {
   EXPECT_FALSE(budget.affords(1e6));
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::slowdown_budget_test

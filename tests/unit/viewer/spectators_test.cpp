@@ -20,8 +20,7 @@
 #include "server/server.hpp"
 #include "support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::spectators_test {
 
 /// A waving ball, a ball at rest, and a large one at rest, whose positions fill the buffers of a socket.
 SceneView watched() {
@@ -177,5 +176,4 @@ TEST(ViewerSlowSpectator, MissesFramesAndIsOwedOnlyTheNewest) {
   alarm(0);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::spectators_test

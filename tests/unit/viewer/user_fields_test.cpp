@@ -14,8 +14,7 @@
 #include "supple/error.hpp"
 #include "support/viewer_page.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::user_fields_test {
 
 constexpr std::uint32_t values_tag = 61, vectors_tag = 62;
 
@@ -198,5 +197,4 @@ TEST_F(UserFieldsTest, SpeedIsThatSinceTheLastStepThatThePageWasGiven) {
   EXPECT_FLOAT_EQ(frame.values<float>(values_tag, 1)[0], 6.f);  // 9 in three steps of half a second
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::user_fields_test

@@ -10,8 +10,7 @@
 #include "supple/error.hpp"
 #include "view_file/view_members.hpp"
 
-namespace supple::viewer {
-namespace {
+namespace supple::viewer::view_file_test {
 
 namespace fs = std::filesystem;
 
@@ -93,5 +92,4 @@ TEST(ViewFile, AnElementOfThePageCannotBeEndedByAText) {
   EXPECT_THROW(page_with_json("<body></body>", "a", "{}"), Error);
 }
 
-}  // namespace
-}  // namespace supple::viewer
+}  // namespace supple::viewer::view_file_test

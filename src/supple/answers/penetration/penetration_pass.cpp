@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-constexpr std::uint8_t is_visited = 1, is_corner = 2, is_on_surface = 4;
+constexpr std::uint8_t is_visited = 1, is_triangle_corner = 2, is_on_surface = 4;
 
 template <class List>
 std::uint32_t size_of(const List& list) {
@@ -142,7 +142,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   collect_touched(task, result, worker);
   auto& marks = worker.marks;
   const auto is_cut = [&](std::uint32_t v, std::uint32_t w) {
-    if ((marks[v] & marks[w] & is_corner) == 0) return false;
+    if ((marks[v] & marks[w] & is_triangle_corner) == 0) return false;
     if (((marks[v] | marks[w]) & is_on_surface) != 0) return true;
     return std::binary_search(worker.cut_edges.begin(), worker.cut_edges.end(),
                               std::array{std::min(v, w), std::max(v, w)});
@@ -152,7 +152,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   const std::vector<std::uint32_t>& corners = worker.corners;
   worker.corner_of.resize(std::max(worker.corner_of.size(), around.vertex_count()));
   for (std::uint32_t c = 0; c < corners.size(); ++c) {
-    marks[corners[c]] |= is_corner;
+    marks[corners[c]] |= is_triangle_corner;
     worker.corner_of[corners[c]] = c;
   }
   worker.sets.start(corners.size());

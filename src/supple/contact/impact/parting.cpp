@@ -82,14 +82,14 @@ struct Sides {
   bool are_equal() const { return !above && !below; }
 };
 
-using Coordinates = std::array<double, 36>;
+using AllCoordinates = std::array<double, 36>;
 
 template <class Number>
 class Parting {
  public:
   /// The corners at the start and at the end, of one triangle and then of the other.
   template <class ToNumber>
-  Parting(const Coordinates& coordinates, const ToNumber& to_number) {
+  Parting(const AllCoordinates& coordinates, const ToNumber& to_number) {
     for (std::size_t n = 0; n < 18; ++n) {
       const std::size_t at = n % 9 + n / 9 * 18;
       StepPolynomial<Number>& p = corners_[n / 9][n % 9 / 3][n % 3];
@@ -202,7 +202,7 @@ bool Parting<Number>::do_part(bool moves_a, bool moves_b) const {
 }  // namespace
 
 bool part_after_start(const MovingTriangle& a, const MovingTriangle& b) {
-  Coordinates coordinates;
+  AllCoordinates coordinates;
   std::size_t count = 0;
   for (const MovingTriangle* const triangle : {&a, &b}) {
     for (const auto* moment : {&triangle->start, &triangle->end}) {

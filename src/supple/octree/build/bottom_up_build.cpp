@@ -21,7 +21,7 @@ constexpr double most_growth = 1.1;
 /// When fewer than one in so many choices are mutual, the next round merges along the curve. Otherwise a
 /// surface that gets coarser in one direction could take a round for each triangle.
 constexpr std::size_t least_mutual_share = 16;
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_cluster = std::numeric_limits<std::uint32_t>::max();
 
 struct Cluster {
   Aabb box;
@@ -41,7 +41,7 @@ struct Level {
 struct Choice {
   double cost = std::numeric_limits<double>::infinity();
   std::size_t distance = 0;  ///< the exclusive or of both places: equal costs then pair off evenly
-  std::uint32_t partner = none;
+  std::uint32_t partner = no_cluster;
 
   void consider(double other_cost, std::size_t place, std::size_t other) {
     if (other_cost > cost || (other_cost == cost && (place ^ other) > distance)) return;
@@ -61,7 +61,7 @@ class BottomUpMerger {
       clusters_[c].size = 1;
       clusters_[c].first = clusters_[c].last = c;
     }
-    next_.assign(clusters_.size(), none);
+    next_.assign(clusters_.size(), no_cluster);
     bool along_curve = false, any_growth = false;
     while (!any_growth || clusters_.size() * (std::uint64_t{most} + 1) > 2 * next_.size()) {
       const std::size_t choices = choose_partners(most, along_curve, any_growth);
@@ -75,7 +75,7 @@ class BottomUpMerger {
     for (const Cluster& cluster : clusters_) {
       level.first.push_back(static_cast<std::uint32_t>(level.members.size()));
       level.triangles.push_back(cluster.triangles);
-      for (std::uint32_t m = cluster.first; m != none; m = next_[m]) level.members.push_back(m);
+      for (std::uint32_t m = cluster.first; m != no_cluster; m = next_[m]) level.members.push_back(m);
     }
     level.first.push_back(static_cast<std::uint32_t>(level.members.size()));
     return level;
@@ -96,7 +96,7 @@ class BottomUpMerger {
       }
     }
     return static_cast<std::size_t>(
-        std::ranges::count_if(choices_, [](const Choice& choice) { return choice.partner != none; }));
+        std::ranges::count_if(choices_, [](const Choice& choice) { return choice.partner != no_cluster; }));
   }
 
   /// Finite, so that clusters compare in a fixed order even where surfaces overflow.
@@ -114,7 +114,7 @@ class BottomUpMerger {
     for (std::size_t c = 0; c < clusters_.size(); ++c) {
       const std::uint32_t d = choices_[c].partner;
       Cluster cluster = clusters_[c];
-      if (d != none && choices_[d].partner == c) {
+      if (d != no_cluster && choices_[d].partner == c) {
         if (d < c) continue;
         const Cluster& other = clusters_[d];
         extend(cluster.box, other.box);

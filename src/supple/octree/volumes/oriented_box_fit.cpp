@@ -8,6 +8,7 @@
 
 #include "core/float_rounding.hpp"
 #include "geometry/aabb.hpp"
+#include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
@@ -69,9 +70,6 @@ double half_surface(Vec3f h) {
   return double{h.x} * h.y + double{h.y} * h.z + double{h.z} * h.x;
 }
 
-Vec3d in_double(Vec3f v) {
-  return {v.x, v.y, v.z};
-}
 Vec3f in_float(Vec3d v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }

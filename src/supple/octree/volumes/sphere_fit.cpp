@@ -40,10 +40,6 @@ Vec3f middle_of(const Aabb& box) {
   return middle;
 }
 
-Vec3d in_double(const Vec3f& p) {
-  return {p.x, p.y, p.z};
-}
-
 /// Finds the vertex that is farthest from a centre.
 class FarthestVertex {
  public:

@@ -38,8 +38,8 @@ struct TriangleDepths {
     return result;
   }
   QueryBox box(unsigned corners) const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    QueryBox result{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    constexpr double most = std::numeric_limits<double>::infinity();
+    QueryBox result{{most, most, most}, {-most, -most, -most}};
     for (std::size_t i = 0; i < 3; ++i) {
       for (int axis = 0; (corners >> i & 1) != 0 && axis < 3; ++axis) {
         result.min[axis] = std::min(result.min[axis], points[i][axis]);

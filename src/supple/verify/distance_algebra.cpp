@@ -1,4 +1,4 @@
-#include "contact/distance/distance_algebra.hpp"
+#include "verify/distance_algebra.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +12,14 @@ namespace supple {
 namespace {
 
 /// A part of an element: its vertices by index, and its place in the order of ties.
-struct Part {
+struct FeaturePart {
   Feature feature;
   std::vector<std::size_t> vertices;
   int order;
 };
 
-std::vector<Part> parts_of(std::size_t vertices) {
-  std::vector<Part> parts;
+std::vector<FeaturePart> parts_of(std::size_t vertices) {
+  std::vector<FeaturePart> parts;
   for (std::uint8_t v = 0; v < vertices; ++v) parts.push_back({{FeatureKind::vertex, v}, {v}, v});
   if (vertices == 2) parts.push_back({{FeatureKind::edge, 0}, {0, 1}, 0});
   if (vertices == 3) {
@@ -79,8 +79,8 @@ using Rank = std::tuple<int, int, int, int>;
 ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3d> b) {
   ExactDistance best;
   std::optional<Rank> best_rank;
-  for (const Part& of_a : parts_of(a.size())) {
-    for (const Part& of_b : parts_of(b.size())) {
+  for (const FeaturePart& of_a : parts_of(a.size())) {
+    for (const FeaturePart& of_b : parts_of(b.size())) {
       const std::size_t dimension = of_a.vertices.size() + of_b.vertices.size() - 2;
       if (dimension > 2) continue;
       std::vector<RationalVector> points_a, points_b;
@@ -94,7 +94,7 @@ ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3
       const bool is_better =
           !best_rank || found.squared < best.squared || (found.squared == best.squared && rank < *best_rank);
       if (!is_better) continue;
-      const auto spread = [](std::array<Rational, 3>& weights, const Part& part) {
+      const auto spread = [](std::array<Rational, 3>& weights, const FeaturePart& part) {
         std::array<Rational, 3> result;
         for (std::size_t i = 0; i < part.vertices.size(); ++i) result[part.vertices[i]] = weights[i];
         weights = result;
