@@ -209,6 +209,9 @@ class Document(RecordingTest):
     def test_every_dataset(self):
         rows = re.findall(r"^\| `([\w/]+)` \| \((.*?)\) \| (text|\w+\d+) \|", PAGE, re.M)
         documented = {path: (shape, kind) for path, shape, kind in rows}
+        for group, objects in re.findall(r"^\| `([\w/]+)/end`((?:, `object_[ab]`)*) \|", PAGE, re.M):
+            documented[f"{group}/end"] = ("F", "uint64")
+            documented.update({f"{group}/{name}": ("rows", "uint32") for name in re.findall(r"\w+", objects)})
         with h5py.File(self.folder / "run.h5", "r") as file:
             found = {re.sub(r"^objects/\d+", "objects/0", path) for path in datasets(file)}
             self.assertEqual(set(documented), found)
