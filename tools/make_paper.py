@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/paper.md and docs/what_holds.md from docs/templates and from the tables in benchmarks/results/paper.
+"""Writes docs/paper.md and docs/what_holds.md from experiments/templates and from the tables in benchmarks/results/paper.
 
 usage: make_paper.py [--check]
 
@@ -130,7 +130,7 @@ def wrapped(page):
 
 
 def pages(results=RESULTS):
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(ROOT / "docs/templates"), undefined=jinja2.StrictUndefined,
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(ROOT / "experiments/templates"), undefined=jinja2.StrictUndefined,
                                      keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True)
     functions = Results(results).functions()
     return {name: wrapped(environment.get_template(name).render(functions)) for name in PAGES}
@@ -149,7 +149,7 @@ def main():
         if not check:
             path.write_text(text, encoding="utf-8")
     if check and stale:
-        sys.exit(f"{', '.join(stale)}: not what tools/make_paper.py makes of docs/templates and the results; run it")
+        sys.exit(f"{', '.join(stale)}: not what tools/make_paper.py makes of experiments/templates and the results; run it")
 
 
 if __name__ == "__main__":

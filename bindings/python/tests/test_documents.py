@@ -27,7 +27,7 @@ def test_examples(name, tmp_path, monkeypatch):
         exec(compile(block, name, "exec"), names)  # noqa: S102
 
 
-FRAMES = re.findall(r"```python\n(.*?)```", (ROOT / "docs/frames.md").read_text(), re.DOTALL)
+FRAMES = re.findall(r"```python\n(.*?)```", (ROOT / "docs/distributed.md").read_text(), re.DOTALL)
 
 
 @pytest.mark.parametrize("number", range(len(FRAMES)))
