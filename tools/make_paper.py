@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/paper.md and docs/what_holds.md from experiments/templates and from the tables in benchmarks/results/paper.
+"""Writes docs/paper.md and experiments/RESULTS.md from experiments/templates and from the tables in benchmarks/results/paper.
 
 usage: make_paper.py [--check]
 
@@ -24,7 +24,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "benchmarks/results/paper"
-PAGES = ("paper.md", "what_holds.md")
+PAGES = {"docs/paper.md": "paper.md", "experiments/RESULTS.md": "results.md"}  # and their templates
 COLUMNS = 110
 
 sys.path.insert(0, str(ROOT / "experiments"))
@@ -133,7 +133,7 @@ def pages(results=RESULTS):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(ROOT / "experiments/templates"), undefined=jinja2.StrictUndefined,
                                      keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True)
     functions = Results(results).functions()
-    return {name: wrapped(environment.get_template(name).render(functions)) for name in PAGES}
+    return {page: wrapped(environment.get_template(name).render(functions)) for page, name in PAGES.items()}
 
 
 def main():
@@ -142,7 +142,7 @@ def main():
         sys.exit(__doc__)
     stale = []
     for name, text in pages().items():
-        path = ROOT / "docs" / name
+        path = ROOT / name
         if path.exists() and path.read_text(encoding="utf-8") == text:
             continue
         stale.append(name)
