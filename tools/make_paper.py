@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/paper.md and experiments/RESULTS.md from experiments/templates and from the tables in benchmarks/results/paper.
+"""Writes docs/paper.md and two pages of experiments from their templates and the tables in benchmarks/results/paper.
 
 usage: make_paper.py [--check]
 
@@ -24,7 +24,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "benchmarks/results/paper"
-PAGES = {"docs/paper.md": "paper.md", "experiments/RESULTS.md": "results.md"}  # and their templates
+PAGES = {"docs/paper.md": "paper.md", "experiments/ELEMENTS.md": "elements.md", "experiments/RESULTS.md": "results.md"}  # and their templates
 COLUMNS = 110
 
 sys.path.insert(0, str(ROOT / "experiments"))
