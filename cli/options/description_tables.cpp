@@ -199,15 +199,30 @@ const char* unit_of(const Role& role, const char* unit) {
   }
 }
 
-void print_dataset(const std::string& name, std::pair<const char*, int> type, const char* unit,
-                   const std::string& doc) {
-  const std::string shape = type.second == 1 ? "(rows)" : fmt::format("(rows, {})", type.second);
-  fmt::print("| `{}` | {} | {} | {} | {} |\n", name, shape, type.first, unit, doc);
+/// A row of the table of datasets, which several datasets of the same form share.
+struct Datasets {
+  std::vector<std::string> names;
+  std::pair<const char*, int> type;
+  const char* unit;
+  std::string doc;
+};
+
+void print_datasets(const std::string& group, const Datasets& row) {
+  const std::string shape = row.type.second == 1 ? "(rows)" : fmt::format("(rows, {})", row.type.second);
+  fmt::print("| `{}/{}` | {} | {} | {} | {} |\n", group, fmt::join(row.names, "`, `"), shape, row.type.first,
+             row.unit, row.doc);
 }
 
-/// The datasets of a record; a feature has two.
+/// Whether `next` is the same of object b as `row` of object a: only letters a are b.
+bool is_other_side(const Datasets& row, const Datasets& next) {
+  const auto is_same_or_b = [](char a, char b) { return a == b || (a == 'a' && b == 'b'); };
+  return row.names[0].ends_with("_a") && next.names[0].ends_with("_b") &&
+         std::ranges::equal(row.doc, next.doc, is_same_or_b);
+}
+
+/// The datasets of a member of a record; a feature has two.
 template <class Row, class Value>
-void print_datasets(const std::string& group, const Field<Row, Value>& field) {
+Datasets datasets_of(const Field<Row, Value>& field) {
   const Role& role = field.role;
   std::string name = field.key, doc = field.doc;
   if (role.names == Names::object) name = std::string("object_") + role.side;
@@ -219,12 +234,14 @@ void print_datasets(const std::string& group, const Field<Row, Value>& field) {
     for (std::size_t i = 0; i < words<Value>.size(); ++i)
       doc += fmt::format("{} {} {}", i == 0 ? ":" : ",", i, words<Value>[i]);
   }
-  if (std::is_same_v<Value, Feature>) doc += ": 0 vertex, 1 edge, 2 face";
   if (std::is_same_v<Value, bool>) doc += ": 0 no, 1 yes";
-  print_dataset(group + "/" + name, stored_as<Value>(), unit_of(role, field.unit), doc);
-  if (std::is_same_v<Value, Feature>)
-    print_dataset(group + "/" + name.insert(std::string_view("feature").size(), "_index"), {"uint8", 1}, "",
-                  "Index of this part: the corner, or the corner where the edge starts");
+  std::vector<std::string> names{name};
+  if (std::is_same_v<Value, Feature>) {
+    doc +=
+        ": 0 vertex, 1 edge, 2 face; the index is that of the corner, or of the corner where the edge starts";
+    names.push_back(name.insert(std::string_view("feature").size(), "_index"));
+  }
+  return {names, stored_as<Value>(), unit_of(role, field.unit), doc};
 }
 
 /// Whether a column is object a or b of its row and nothing more: the row of the list names it then.
@@ -244,12 +261,18 @@ void lists_table() {
           if (is_plain_object(field)) names += fmt::format(", `object_{}`", field.role.side);
         });
       fmt::print("| {} | | | | a row is: {} |\n", names, list.doc);
+      std::vector<Datasets> rows;
       if constexpr (Described<Row>)
         for_each_field<Row>([&](const auto& field) {
-          if (!is_plain_object(field)) print_datasets(group, field);
+          if (is_plain_object(field)) return;
+          Datasets row = datasets_of(field);
+          if (rows.empty() || !is_other_side(rows.back(), row)) return rows.push_back(std::move(row));
+          rows.back().names.insert(rows.back().names.end(), row.names.begin(), row.names.end());
+          rows.back().doc += "; b likewise";
         });
       else
-        print_dataset(group + "/" + list.value, stored_as<Row>(), unit_of(list.role, list.unit), "");
+        rows.push_back({{list.value}, stored_as<Row>(), unit_of(list.role, list.unit), ""});
+      for (const Datasets& row : rows) print_datasets(group, row);
     });
   });
 }
