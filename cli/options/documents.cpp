@@ -177,7 +177,7 @@ void print_markdown(const CLI::App& program) {
   fmt::print("```text\n{}\n```\n\n{}\n", examples_of(footer), paragraph_of(footer));
   const std::vector<SharedOption> shared = shared_options(program);
   for (const CLI::App* command : commands_of(program)) {
-    fmt::print("\n## supple {}\n\n{}.\n\n`supple {} {}`\n\n", command->get_name(), command->get_description(),
+    fmt::print("\n## supple {}\n\n{}: `supple {} {}`\n\n", command->get_name(), command->get_description(),
                command->get_name(), arguments_of(*command));
     print_markdown_options(*command, shared);
     print_markdown_footer(command->get_footer());
