@@ -171,7 +171,7 @@ void print_markdown_footer(const std::string& footer) {
 void print_markdown(const CLI::App& program) {
   fmt::print(
       "# The command line\n\n`make docs` writes this page from the options of the program. `--help` and the "
-      "manual page have\nthe same content.\n\n{}\n\n",
+      "manual page\nalso list the options of scenes and objects.\n\n{}\n\n",
       program.get_description());
   const std::string footer = program.get_footer();
   fmt::print("```text\n{}\n```\n\n{}\n", examples_of(footer), paragraph_of(footer));
