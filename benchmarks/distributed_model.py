@@ -2,8 +2,8 @@
 """Measures how a distributed scene scales, and predicts how it scales on many machines.
 
 usage: distributed_model.py measure PROGRAM     runs PROGRAM, writes benchmarks/results/distributed/ranks.csv
-       distributed_model.py                     writes the section and the figure of docs/distributed.md
-       distributed_model.py --check             writes nothing, fails when the section is out of date
+       distributed_model.py                     writes benchmarks/SCALING.md and its figure
+       distributed_model.py --check             writes nothing, fails when the page is out of date
 
 PROGRAM is supple_distributed_ranks. The ranks share the cores of one machine, so only counts and the
 processor time outside of MPI say something; see benchmarks/distributed_ranks.cpp. A run of all takes 20
@@ -31,8 +31,7 @@ STRONG = [(ranks, workload) for workload in ("tiles:1414", "sheet:1414", "balls:
 WEAK = [(1, "tiles:250"), (4, "tiles:500"), (16, "tiles:1000"), (64, "tiles:2000"),
         (1, "balls:27:20"), (8, "balls:216:20"), (64, "balls:1728:20")]
 STEPS = 3
-PAGE, FIGURE = ROOT / "docs/distributed.md", ROOT / "docs/figures/distributed_scaling.svg"
-MARKS = "<!-- from how_it_scales.md -->\n", "<!-- up to here -->\n"
+PAGE, FIGURE = ROOT / "benchmarks/SCALING.md", ROOT / "docs/figures/distributed_scaling.svg"
 
 FITTED = 16  # the model is fitted to runs on at most so many ranks, and tested on the others
 # A rank is a core of Frontier: 64 cores share four network cards of 200 Gb/s.
@@ -255,14 +254,14 @@ def cells(row):
             f"{surface} | {row['messages'] / ranks:.0f} ({row['messages_of_rank']:.0f}) |")
 
 
-def section():
-    """The section of the page, from its template."""
+def page():
+    """The page, from its template."""
     head, _ = read(RESULTS)
-    dask = re.search(r"scheduler alone.*?\| ([\d,]+) \|", (ROOT / "docs/frames.md").read_text(encoding="utf-8"))
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(ROOT / "docs/templates"), undefined=jinja2.StrictUndefined,
+    dask = re.search(r"scheduler alone.*?\| ([\d,]+) \|", (ROOT / "docs/distributed.md").read_text(encoding="utf-8"))
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(ROOT / "benchmarks/templates"), undefined=jinja2.StrictUndefined,
                                      keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True)
     tiles, balls, strips = scenes()
-    text = wrapped(environment.get_template("how_it_scales.md").render(
+    text = wrapped(environment.get_template("SCALING.md").render(
         globals() | {"head": head, "tiles": tiles, "balls": balls, "strips": strips, "short": rounded,
                      "percent": lambda value: f"{100 * value:.0f}", "signed": lambda value: f"{round(100 * value):+d} %".replace("-", "−"),
                      "tasks": float(dask[1].replace(",", "")), "log2": math.log2}))
@@ -272,11 +271,9 @@ def section():
 def main():
     if sys.argv[1:2] == ["measure"]:
         return measure(sys.argv[2])
-    page = PAGE.read_text(encoding="utf-8")
-    before, rest = page.split(MARKS[0])
-    now = before + MARKS[0] + section() + MARKS[1] + rest.split(MARKS[1])[1]
+    now = page()
     if sys.argv[1:] == ["--check"]:
-        if now != page:
+        if now != PAGE.read_text(encoding="utf-8"):
             sys.exit(f"distributed_model.py: {PAGE.relative_to(ROOT)} is out of date; run benchmarks/distributed_model.py")
         return None
     PAGE.write_text(now, encoding="utf-8")

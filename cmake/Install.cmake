@@ -36,5 +36,9 @@ endif()
 if(TARGET supple_cli)
   install(TARGETS supple_cli supple_experiment RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/supple)
-  install(FILES ${PROJECT_SOURCE_DIR}/docs/supple.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  if(NOT CMAKE_CROSSCOMPILING)  # the program of experiments writes the manual page: it has all options
+    install(CODE "execute_process(COMMAND \"$<TARGET_FILE:supple_experiment>\" --generate man
+      OUTPUT_FILE \"${PROJECT_BINARY_DIR}/supple.1\" COMMAND_ERROR_IS_FATAL ANY)")
+    install(FILES ${PROJECT_BINARY_DIR}/supple.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  endif()
 endif()

@@ -1,4 +1,4 @@
-// Tutorial, page 1: two models that intersect.
+// Tutorial, part 1: two models that intersect.
 #include <cstdio>
 
 #include "supple/models.hpp"

@@ -1,4 +1,4 @@
-// Tutorial, page 2: a soft ball falls onto a floor. The simulator is this file; Supple only finds the
+// Tutorial, part 2: a soft ball falls onto a floor. The simulator is this file; Supple only finds the
 // contacts.
 #include <cstdio>
 #include <vector>

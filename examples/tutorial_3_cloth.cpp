@@ -1,4 +1,4 @@
-// Tutorial, page 3: a cloth falls onto a ball and must pass neither through the ball nor through itself.
+// Tutorial, part 3: a cloth falls onto a ball and must pass neither through the ball nor through itself.
 #include <algorithm>
 #include <cstdio>
 #include <vector>

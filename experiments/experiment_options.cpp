@@ -43,7 +43,7 @@ constexpr const char* footer = R"(Examples:
 
 Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the
 paper's claims hold. The page needs python3 with matplotlib. Without it, the tables are written and the exit
-status is 2. docs/experiments.md describes the experiments.)";
+status is 2. experiments/README.md describes the experiments.)";
 
 void add_kind(CLI::App& app, ExperimentOptions& options) {
   using Kind = ExperimentOptions::Kind;

@@ -8,8 +8,9 @@ comment, or shares that of the declaration in the line above or of an earlier ov
 (const methods with at most one parameter) need none. Fields need one in structures that users fill in, unless
 their type is one of this interface. The comment of a structure explains its other fields.
 
-Documents: what needs a comment in the core occurs as code in README.md, docs/**/*.md or another comment, or it
-is in UNMENTIONED. `set_x` and `verify_x` are mentioned where `x` is, and a type where a declaration has it.
+Documents: what needs a comment in the core occurs as code in README.md, docs/*.md, experiments/*.md or another
+comment, or it is in UNMENTIONED. `set_x` and `verify_x` are mentioned where `x` is, and a type where a declaration
+has it.
 
 Bindings: FILE has {"names": [...], "left_out": {NAME: REASON}}, and "libraries": [...] if it covers only some.
 Both lists together have all types, functions, constants, values, fields and methods ("Scene::detect"). A type
@@ -82,7 +83,7 @@ def documentation_problems(api, root):
     needing = [each for each in every if each.needs_comment(types)]
     yield from (f"{each.name}: has no doc comment" for each in needing if not each.is_documented())
     needing = [each for each in needing if each.header["library"] == "core" and each.key != "constructors"]
-    documents = (path.read_text(encoding="utf-8") for path in (*root.glob("README.md"), *root.glob("docs/**/*.md")))
+    documents = (path.read_text(encoding="utf-8") for pattern in ("README.md", "docs/*.md", "experiments/*.md") for path in root.glob(pattern))
     known = set().union(*map(code_words, documents))
     comments = [(each.name, code_words(each.item.get("doc", ""))) for each in every]
     whole = [(each.name, set(re.findall(r"\w+", json.dumps(each.item)))) for each in every]

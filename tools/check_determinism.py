@@ -42,7 +42,7 @@ CROSS = {"x86_64": [], "aarch64": ["-DCMAKE_SYSTEM_NAME=Linux"], "riscv64": ["-D
 FLAGS = {("x86_64", "libc++"): ["-stdlib=libc++"], ("wasm32", "libc++"): ["-fignore-exceptions"]}
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-DOCUMENT = ROOT / "docs" / "determinism.md"
+DOCUMENT = ROOT / "tests" / "determinism" / "README.md"
 NOT_SUPPORTED = 77  # the exit status of a program whose instruction set this machine does not have
 
 
@@ -124,7 +124,7 @@ def write_table(lines):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("words", nargs="*", help="check only rows with all of these words, such as riscv64, or clang++-19 libc++")
-    parser.add_argument("--table", action="store_true", help="write the results into docs/determinism.md, when all compilers and emulators are there")
+    parser.add_argument("--table", action="store_true", help="write the results into tests/determinism/README.md, when all compilers and emulators are there")
     arguments = parser.parse_args()
     lines, results = [], []
     for *row, sets in rows():
@@ -142,7 +142,7 @@ def main():
         sys.exit("check_determinism.py: results differ, or nothing was checked")
     if arguments.table:
         if len(lines) < sum(len(sets) for *_, sets in rows()):
-            sys.exit("check_determinism.py: not every row was checked, so the table in docs/determinism.md stays as it is")
+            sys.exit("check_determinism.py: not every row was checked, so the table in tests/determinism/README.md stays as it is")
         write_table(lines)
 
 

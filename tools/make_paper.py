@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/paper.md and docs/what_holds.md from docs/templates and from the tables in benchmarks/results/paper.
+"""Writes docs/paper.md and two pages of experiments from their templates and the tables in benchmarks/results/paper.
 
 usage: make_paper.py [--check]
 
@@ -24,7 +24,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "benchmarks/results/paper"
-PAGES = ("paper.md", "what_holds.md")
+PAGES = {"docs/paper.md": "paper.md", "experiments/ELEMENTS.md": "elements.md", "experiments/RESULTS.md": "results.md"}  # and their templates
 COLUMNS = 110
 
 sys.path.insert(0, str(ROOT / "experiments"))
@@ -130,10 +130,10 @@ def wrapped(page):
 
 
 def pages(results=RESULTS):
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(ROOT / "docs/templates"), undefined=jinja2.StrictUndefined,
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(ROOT / "experiments/templates"), undefined=jinja2.StrictUndefined,
                                      keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True)
     functions = Results(results).functions()
-    return {name: wrapped(environment.get_template(name).render(functions)) for name in PAGES}
+    return {page: wrapped(environment.get_template(name).render(functions)) for page, name in PAGES.items()}
 
 
 def main():
@@ -142,14 +142,14 @@ def main():
         sys.exit(__doc__)
     stale = []
     for name, text in pages().items():
-        path = ROOT / "docs" / name
+        path = ROOT / name
         if path.exists() and path.read_text(encoding="utf-8") == text:
             continue
         stale.append(name)
         if not check:
             path.write_text(text, encoding="utf-8")
     if check and stale:
-        sys.exit(f"{', '.join(stale)}: not what tools/make_paper.py makes of docs/templates and the results; run it")
+        sys.exit(f"{', '.join(stale)}: not what tools/make_paper.py makes of experiments/templates and the results; run it")
 
 
 if __name__ == "__main__":

@@ -128,15 +128,24 @@ void option_table(const char* name) {
   });
 }
 
+/// The attributes of each type, in the order of the types' first attributes.
 template <class Struct>
 void attribute_table(const char* name) {
-  table(name, "| Attribute | Type |", [] {
-    for_each_row<Struct>(
-        [](const auto& field, const auto&) { fmt::print("| `{}` | {} |\n", field.key, stored_type(field)); });
+  table(name, "| Attributes | Type |", [] {
+    std::vector<std::pair<std::string, std::string>> names_by_type;
+    for_each_row<Struct>([&](const auto& field, const auto&) {
+      const std::string type = stored_type(field);
+      const auto known = std::ranges::find(names_by_type, type, &std::pair<std::string, std::string>::second);
+      if (known == names_by_type.end())
+        names_by_type.emplace_back(code(field.key), type);
+      else
+        known->first += ", " + code(field.key);
+    });
+    for (const auto& [names, type] : names_by_type) fmt::print("| {} | {} |\n", names, type);
   });
 }
 
-void statistics_tables() {
+void statistics_table() {
   const StepStats stats;
   table("recording_statistics", "| Dataset | Shape | Type | Unit | Meaning |", [&] {
     for_each_leaf(
@@ -151,11 +160,6 @@ void statistics_tables() {
                      Worded<Value> ? "uint8" : stored_type(field), field.unit, doc);
         },
         stats);
-  });
-  table("json_stats", "| Key | Unit | Meaning |", [&] {
-    for_each_leaf([&](const auto& field,
-                      const auto&) { fmt::print("| `{}` | {} | {} |\n", field.key, field.unit, field.doc); },
-                  stats);
   });
 }
 
@@ -195,15 +199,30 @@ const char* unit_of(const Role& role, const char* unit) {
   }
 }
 
-void print_dataset(const std::string& name, std::pair<const char*, int> type, const char* unit,
-                   const std::string& doc) {
-  const std::string shape = type.second == 1 ? "(rows)" : fmt::format("(rows, {})", type.second);
-  fmt::print("| `{}` | {} | {} | {} | {} |\n", name, shape, type.first, unit, doc);
+/// A row of the table of datasets, which several datasets of the same form share.
+struct Datasets {
+  std::vector<std::string> names;
+  std::pair<const char*, int> type;
+  const char* unit;
+  std::string doc;
+};
+
+void print_datasets(const std::string& group, const Datasets& row) {
+  const std::string shape = row.type.second == 1 ? "(rows)" : fmt::format("(rows, {})", row.type.second);
+  fmt::print("| `{}/{}` | {} | {} | {} | {} |\n", group, fmt::join(row.names, "`, `"), shape, row.type.first,
+             row.unit, row.doc);
 }
 
-/// The datasets of a record; a feature has two.
+/// Whether `next` is the same of object b as `row` of object a: only letters a are b.
+bool is_other_side(const Datasets& row, const Datasets& next) {
+  const auto is_same_or_b = [](char a, char b) { return a == b || (a == 'a' && b == 'b'); };
+  return row.names[0].ends_with("_a") && next.names[0].ends_with("_b") &&
+         std::ranges::equal(row.doc, next.doc, is_same_or_b);
+}
+
+/// The datasets of a member of a record; a feature has two.
 template <class Row, class Value>
-void print_datasets(const std::string& group, const Field<Row, Value>& field) {
+Datasets datasets_of(const Field<Row, Value>& field) {
   const Role& role = field.role;
   std::string name = field.key, doc = field.doc;
   if (role.names == Names::object) name = std::string("object_") + role.side;
@@ -215,23 +234,45 @@ void print_datasets(const std::string& group, const Field<Row, Value>& field) {
     for (std::size_t i = 0; i < words<Value>.size(); ++i)
       doc += fmt::format("{} {} {}", i == 0 ? ":" : ",", i, words<Value>[i]);
   }
-  if (std::is_same_v<Value, Feature>) doc += ": 0 vertex, 1 edge, 2 face";
   if (std::is_same_v<Value, bool>) doc += ": 0 no, 1 yes";
-  print_dataset(group + "/" + name, stored_as<Value>(), unit_of(role, field.unit), doc);
-  if (std::is_same_v<Value, Feature>)
-    print_dataset(group + "/" + name.insert(std::string_view("feature").size(), "_index"), {"uint8", 1}, "",
-                  "Index of this part: the corner, or the corner where the edge starts");
+  std::vector<std::string> names{name};
+  if (std::is_same_v<Value, Feature>) {
+    doc +=
+        ": 0 vertex, 1 edge, 2 face; the index is that of the corner, or of the corner where the edge starts";
+    names.push_back(name.insert(std::string_view("feature").size(), "_index"));
+  }
+  return {names, stored_as<Value>(), unit_of(role, field.unit), doc};
+}
+
+/// Whether a column is object a or b of its row and nothing more: the row of the list names it then.
+template <class Row, class Value>
+bool is_plain_object(const Field<Row, Value>& field) {
+  const std::string_view doc = field.doc;
+  return field.role.names == Names::object && (doc.starts_with("Object a") || doc.starts_with("Object b"));
 }
 
 void lists_table() {
   table("recording_lists", "| Dataset | Shape | Type | Unit | Meaning |", [] {
     for_each_list([]<class Row>(const ResultList<Row>& list, auto) {
       const std::string group = list.name;
-      fmt::print("| `{}/end` | (F) | uint64 | rows | a row is: {} |\n", group, list.doc);
+      std::string names = fmt::format("`{}/end`", group);
       if constexpr (Described<Row>)
-        for_each_field<Row>([&](const auto& field) { print_datasets(group, field); });
+        for_each_field<Row>([&](const auto& field) {
+          if (is_plain_object(field)) names += fmt::format(", `object_{}`", field.role.side);
+        });
+      fmt::print("| {} | | | | a row is: {} |\n", names, list.doc);
+      std::vector<Datasets> rows;
+      if constexpr (Described<Row>)
+        for_each_field<Row>([&](const auto& field) {
+          if (is_plain_object(field)) return;
+          Datasets row = datasets_of(field);
+          if (rows.empty() || !is_other_side(rows.back(), row)) return rows.push_back(std::move(row));
+          rows.back().names.insert(rows.back().names.end(), row.names.begin(), row.names.end());
+          rows.back().doc += "; b likewise";
+        });
       else
-        print_dataset(group + "/" + list.value, stored_as<Row>(), unit_of(list.role, list.unit), "");
+        rows.push_back({{list.value}, stored_as<Row>(), unit_of(list.role, list.unit), ""});
+      for (const Datasets& row : rows) print_datasets(group, row);
     });
   });
 }
@@ -270,20 +311,6 @@ void fields_table() {
       fmt::print("| `{}` | {}{} | {} | {} |\n", form.key, of, form.is_vector ? ", a vector" : "", form.unit,
                  form.doc);
     }
-  });
-}
-
-template <class... Records>
-void record_table(const char* name) {
-  table(name, "| Record | Key | Unit | Meaning |", [] {
-    const auto rows = []<class Record>(const Record&) {
-      for_each_field<Record>([](const auto& field) {
-        if (field.role.names == Names::rows || field.role.names == Names::first_row) return;
-        fmt::print("| {} | `{}` | {} | {} |\n", Description<Record>::name, field.key,
-                   unit_of(field.role, field.unit), field.doc);
-      });
-    };
-    (rows(Records{}), ...);
   });
 }
 
@@ -362,6 +389,14 @@ void print_view_members() {
   fmt::print("];\n");
 }
 
+std::vector<std::string> keys_of_tables() {
+  std::vector<std::string> keys;
+  const auto add = [&](const auto& field, const auto&) { keys.emplace_back(field.key); };
+  for_each_row<SceneOptions>(add);
+  for_each_row<ObjectOptions>(add);
+  return keys;
+}
+
 void print_description_tables() {
   attribute_table<SceneOptions>("recording_scene_options");
   attribute_table<ObjectOptions>("recording_object_options");
@@ -369,8 +404,7 @@ void print_description_tables() {
   sections_table();
   view_table();
   fields_table();
-  statistics_tables();
-  record_table<Manifold, ManifoldPoint>("json_manifolds");
+  statistics_table();
   csv_table();
   option_table<ObjectOptions>("scene_object_options");
   option_table<CoordinateConversion>("scene_coordinate_options");

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 namespace supple::cli {
 
 /// Prints the tables of options and statistics for the documents, made from their descriptions. For each
@@ -10,5 +13,7 @@ void print_description_tables();
 void print_sections();
 /// Prints the members of a view file as a module of TypeScript, for the page.
 void print_view_members();
+/// The keys of all options of scenes and objects, which docs/options.md lists.
+std::vector<std::string> keys_of_tables();
 
 }  // namespace supple::cli

@@ -6,8 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "options/description_tables.hpp"
@@ -81,51 +83,101 @@ bool is_shared(const CLI::Option* option, const std::vector<SharedOption>& all) 
                      [&](const SharedOption& shared) { return are_same(shared.option, option); });
 }
 
-std::string markdown_spelling(const CLI::Option* option) {
-  return replaced(spelling(option), "|", "\\|");
+std::string markdown(std::string text) {
+  return replaced(std::move(text), "|", "\\|");
+}
+
+/// Whether docs/options.md lists the option: it has the key of an option of a scene or an object.
+bool is_in_tables(const CLI::Option* option) {
+  static const std::vector<std::string> keys = keys_of_tables();
+  std::string key = replaced(option->get_name(false, true), "-", "_").substr(2);
+  if (key.starts_with("no_")) key.erase(0, 3);
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+/// `--leaf-size 1`, with the default value of the description.
+std::string with_default(const CLI::Option* option) {
+  const std::string& text = option->get_description();
+  const std::string_view mark = "default: ";
+  const std::size_t at = text.rfind(mark);
+  std::string name = replaced(option->get_name(false, true), ",", ", ");
+  return at == std::string::npos
+             ? name
+             : name + " " + text.substr(at + mark.size(), text.rfind(')') - at - mark.size());
 }
 
 void print_markdown_options(const CLI::App& app, const std::vector<SharedOption>& shared) {
-  std::string names;
+  std::string names, with_other_defaults;
+  const auto append = [](std::string& list, const std::string& name) {
+    list += fmt::format("{}`{}`", list.empty() ? "" : ", ", name);
+  };
   fmt::print("| Option | Meaning |\n|---|---|\n");
   for (const CLI::Option* option : app.get_options()) {
     if (!is_documented(option)) continue;
     if (is_shared(option, shared))
-      names += fmt::format("{}`{}`", names.empty() ? "" : ", ",
-                           replaced(option->get_name(false, true), ",", ", "));
+      append(names, replaced(option->get_name(false, true), ",", ", "));
+    else if (is_in_tables(option))
+      append(with_other_defaults, with_default(option));
     else
-      fmt::print("| `{}` | {} |\n", markdown_spelling(option), option->get_description());
+      fmt::print("| `{}` | {} |\n", markdown(spelling(option)), option->get_description());
   }
+  if (!with_other_defaults.empty())
+    fmt::print("| [options](options.md#scene) of table1, with their defaults there | {} |\n",
+               markdown(with_other_defaults));
   fmt::print("| [also](#options-of-several-commands) | {} |\n\n", names);
 }
 
 void print_shared_markdown_options(const std::vector<SharedOption>& all) {
   fmt::print(
-      "\n## Options of several commands\n\n[Options](options.md) has the ranges and the keys of scene "
-      "files.\n\n"
+      "\n## Options of several commands\n\nThe options of [scenes](options.md#scene) and "
+      "[objects](options.md#object) are on their own page, with\ndefaults and ranges: `--leaf-size` is "
+      "`leaf_size` there, and `--no-curves` sets `curves` to `false`. Those of\nobjects hold for all objects "
+      "of a command. `--scene-octree-root` also takes `border`: the cube around the\nborder of the scene. "
+      "The other options that several commands have:\n\n"
       "| Option | Meaning | Commands |\n|---|---|---|\n");
   for (const SharedOption& shared : all)
-    fmt::print("| `{}` | {} | {} |\n", markdown_spelling(shared.option), shared.option->get_description(),
-               fmt::join(shared.commands, ", "));
+    if (!is_in_tables(shared.option))
+      fmt::print("| `{}` | {} | {} |\n", markdown(spelling(shared.option)), shared.option->get_description(),
+                 fmt::join(shared.commands, ", "));
 }
 
-/// The footer is `Examples:` with indented lines, optionally followed by a paragraph.
-void print_markdown_footer(const std::string& footer) {
+/// The lines of examples of a footer, which is `Examples:` with indented lines, optionally followed by a
+/// paragraph.
+std::string examples_of(const std::string& footer) {
+  const std::string examples = footer.substr(0, footer.find("\n\n"));
+  return examples.substr(examples.find('\n') + 1);
+}
+
+std::string paragraph_of(const std::string& footer) {
   const std::size_t end_of_examples = footer.find("\n\n");
-  const std::string_view examples = std::string_view(footer).substr(0, end_of_examples);
-  fmt::print("```text\n{}\n```\n", examples.substr(examples.find('\n') + 1));
-  if (end_of_examples != std::string::npos) fmt::print("\n{}\n", footer.substr(end_of_examples + 2));
+  return end_of_examples == std::string::npos ? "" : footer.substr(end_of_examples + 2);
+}
+
+/// An example is a command, indented by two blanks, and lines that explain it, indented by six.
+void print_markdown_footer(const std::string& footer) {
+  std::string rows;
+  std::istringstream examples(examples_of(footer));
+  for (std::string line; std::getline(examples, line);) {
+    if (line.starts_with("      "))
+      rows += " " + markdown(line.substr(6));
+    else
+      rows += fmt::format("{}| `{}` |", rows.empty() ? "" : " |\n", markdown(line.substr(2)));
+  }
+  fmt::print("| Example | What it does |\n|---|---|\n{} |\n", rows);
+  const std::string paragraph = paragraph_of(footer);
+  if (!paragraph.empty()) fmt::print("\n{}\n", paragraph);
 }
 
 void print_markdown(const CLI::App& program) {
   fmt::print(
       "# The command line\n\n`make docs` writes this page from the options of the program. `--help` and the "
-      "manual page have\nthe same content.\n\n{}\n\n",
+      "manual page\nalso list the options of scenes and objects.\n\n{}\n\n",
       program.get_description());
-  print_markdown_footer(program.get_footer());
+  const std::string footer = program.get_footer();
+  fmt::print("```text\n{}\n```\n\n{}\n", examples_of(footer), paragraph_of(footer));
   const std::vector<SharedOption> shared = shared_options(program);
   for (const CLI::App* command : commands_of(program)) {
-    fmt::print("\n## supple {}\n\n{}.\n\n`supple {} {}`\n\n", command->get_name(), command->get_description(),
+    fmt::print("\n## supple {}\n\n{}: `supple {} {}`\n\n", command->get_name(), command->get_description(),
                command->get_name(), arguments_of(*command));
     print_markdown_options(*command, shared);
     print_markdown_footer(command->get_footer());
@@ -156,10 +208,9 @@ std::string roff(const std::string& text) {
 }
 
 void print_roff_footer(const std::string& footer) {
-  const std::size_t end_of_examples = footer.find("\n\n");
-  const std::string examples = footer.substr(0, end_of_examples);
-  fmt::print(".nf\n{}\n.fi\n", roff(examples.substr(examples.find('\n') + 1)));
-  if (end_of_examples != std::string::npos) fmt::print(".PP\n{}\n", roff(footer.substr(end_of_examples + 2)));
+  fmt::print(".nf\n{}\n.fi\n", roff(examples_of(footer)));
+  const std::string paragraph = paragraph_of(footer);
+  if (!paragraph.empty()) fmt::print(".PP\n{}\n", roff(paragraph));
 }
 
 void print_roff_option(const CLI::Option* option) {

@@ -21,7 +21,7 @@ namespace {
 CLI::Option* add_view_file(CLI::App& app, ViewOptions& options) {
   return app
       .add_option("--view", options.view_file,
-                  "View file, which the page saves: camera, layers, colours and more; see docs/view_file.md "
+                  "View file, which the page saves: camera, layers, colours and more; see docs/viewer.md "
                   "(default: the view that the page begins with)")
       ->type_name("VIEW.json");
 }

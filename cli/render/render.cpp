@@ -57,7 +57,7 @@ Pixels size_in_pixels(const RenderOptions& options) {
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
-/// What the page shall draw (docs/protocol.md).
+/// What the page shall draw (viewer/PROTOCOL.md).
 std::string job_of(const RenderOptions& options, Pixels size) {
   viewer::JsonText json;
   json.begin_object();

@@ -14,7 +14,7 @@
 
 namespace supple::fuzz {
 
-/// Checks a message as a page does (docs/protocol.md).
+/// Checks a message as a page does (viewer/PROTOCOL.md).
 inline void check_session_message(std::span<const std::byte> message) {
   const auto word = [&](std::size_t place) {
     check(place + 4 <= message.size(), "a message ends early");

@@ -100,7 +100,7 @@ struct Impact {
 /// Throws `Error` when an option is out of its range. Takes about 0.1 µs for elements that stay apart and
 /// 0.3 µs for others. When only exact arithmetic can decide, it takes a few microseconds, or a few
 /// hundred with a separation, and allocates memory. Coordinates that differ by more than 2^100 in size can
-/// then take milliseconds; docs/conventions.md has a table.
+/// then take milliseconds; docs/guarantees.md has a table.
 std::optional<Impact> first_impact(const VertexFaceMotion& motion, const ImpactOptions& options = {});
 std::optional<Impact> first_impact(const EdgeEdgeMotion& motion, const ImpactOptions& options = {});
 /// Points and edges take some microseconds where they touch without a separation.

@@ -235,7 +235,7 @@ class Scene {
   // that is not in the scene.
   //
   // Worst case: each query decides all triangles, and `distance` all pairs of elements, by exact arithmetic;
-  // docs/conventions.md has a table of its time. That needs input made for it, such as many triangles at
+  // docs/guarantees.md has a table of its time. That needs input made for it, such as many triangles at
   // distances that are equal to a hundred bits. `CallLimits::stop` ends such a call.
 
   /// For each point the nearest triangle, or nothing when there is none within the largest distance and when

@@ -207,8 +207,14 @@ class Document(RecordingTest):
 
     @with_h5py
     def test_every_dataset(self):
-        rows = re.findall(r"^\| `([\w/]+)` \| \((.*?)\) \| (text|\w+\d+) \|", PAGE, re.M)
-        documented = {path: (shape, kind) for path, shape, kind in rows}
+        documented = {}
+        for path, others, shape, kind in re.findall(r"^\| `([\w/]+)`((?:, `\w+`)*) \| \((.*?)\) \| (text|\w+\d+) \|", PAGE, re.M):
+            group = path.rpartition("/")[0]
+            for each in (path, *(f"{group}/{name}" for name in re.findall(r"\w+", others))):
+                documented[each] = (shape, kind)
+        for group, objects in re.findall(r"^\| `([\w/]+)/end`((?:, `object_[ab]`)*) \|", PAGE, re.M):
+            documented[f"{group}/end"] = ("F", "uint64")
+            documented.update({f"{group}/{name}": ("rows", "uint32") for name in re.findall(r"\w+", objects)})
         with h5py.File(self.folder / "run.h5", "r") as file:
             found = {re.sub(r"^objects/\d+", "objects/0", path) for path in datasets(file)}
             self.assertEqual(set(documented), found)

@@ -1,4 +1,4 @@
-"""docs/distributed.md has the example that is compiled, and its output, which any number of ranks prints."""
+"""docs/distributed.md has parts of the example that is compiled, and its output, which any number of ranks prints."""
 
 import pathlib
 import re
@@ -14,10 +14,11 @@ def blocks(language):
 
 
 class Document(unittest.TestCase):
-    def test_the_program_is_the_example(self):
+    def test_its_parts_are_those_of_the_example(self):
         program = (ROOT / "examples/distributed/many_ranks.cpp").read_text()
-        shown = [block for block in blocks("cpp") if "int main" in block]
-        self.assertEqual(shown, [program[program.index("void run()"):]])
+        self.assertTrue(blocks("cpp"))
+        for block in blocks("cpp"):
+            self.assertIn(block, program)
 
     def test_any_number_of_ranks_prints_the_output(self):
         for ranks in (1, 2, 3):

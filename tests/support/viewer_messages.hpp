@@ -14,7 +14,7 @@
 
 namespace supple {
 
-/// A parsed message of the viewer (docs/protocol.md). The parser is independent of the code that writes
+/// A parsed message of the viewer (viewer/PROTOCOL.md). The parser is independent of the code that writes
 /// messages. Throws `std::runtime_error` for invalid messages.
 class ViewerMessage {
  public:

@@ -38,7 +38,7 @@ struct ServerOptions {
 /// Whether only programs on this machine can reach the address. Throws `Error` for an invalid IP address.
 bool is_loopback(const std::string& address);
 
-/// Serves a session to one page at a time, and to others that only watch (docs/protocol.md). A client must
+/// Serves a session to one page at a time, and to others that only watch (viewer/PROTOCOL.md). A client must
 /// address the server by its own address, which excludes pages of other sites, and must know a random token.
 class Server {
  public:

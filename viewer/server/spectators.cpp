@@ -13,7 +13,7 @@ struct Section {
   std::span<const std::byte> data{};
 };
 
-/// Calls `visit(section)` for each section of a message that this program has made (docs/protocol.md).
+/// Calls `visit(section)` for each section of a message that this program has made (viewer/PROTOCOL.md).
 template <class Visit>
 void visit_sections(std::span<const std::byte> message, const Visit& visit) {
   constexpr std::size_t header = 16;

@@ -16,7 +16,7 @@ struct MemoryBudget {
   double history_bytes = 5e8;  ///< for the positions of the last steps; 0 keeps no steps
 };
 
-/// One viewer session (docs/protocol.md): takes commands, produces messages. It has no clock, no threads of
+/// One viewer session (viewer/PROTOCOL.md): takes commands, produces messages. It has no clock, no threads of
 /// its own and no network, so the program and the page run the same code. When memory runs out, functions
 /// produce a failure message or throw `std::bad_alloc`; after the exception, only destroy the session.
 class Session {

@@ -97,7 +97,7 @@ std::string fault_of(const JsonValue& value, const Members& members, std::size_t
                    const std::string_view name = name_at(member->path, depth);
                    return name == "*" || name == value.names[i];
                  });
-    if (candidates.empty()) return inner + " is unknown; docs/view_file.md lists the members";
+    if (candidates.empty()) return inner + " is unknown; docs/viewer.md lists the members";
     std::string fault = fault_of(value.elements[i], candidates, depth + 1, inner);
     if (!fault.empty()) return fault;
   }

@@ -6,7 +6,7 @@
 
 namespace supple::viewer {
 
-/// Throws `Error` for a text that is no view (docs/view_file.md): says which member is wrong and what it must
+/// Throws `Error` for a text that is no view (docs/viewer.md): says which member is wrong and what it must
 /// be. `name` is the file, for the message.
 void check_view(std::string_view text, const std::string& name);
 

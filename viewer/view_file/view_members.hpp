@@ -9,7 +9,7 @@
 namespace supple::viewer {
 
 // What a view file contains. The checks of the program and of the page
-// (viewer/page/src/protocol/view_members.ts) and the table of docs/view_file.md are made from this list.
+// (viewer/page/src/protocol/view_members.ts) and the table of docs/viewer.md are made from this list.
 
 enum class ViewValue : std::uint8_t {
   number,
@@ -115,7 +115,7 @@ inline constexpr std::array view_members = std::to_array<ViewMember>({
     {"pins.*.b", ViewValue::text, "name of the second object of a pair"},
     {"pins.*.contact", ViewValue::text,
      "only this contact of the pair: the first four numbers of its row in `contacts`, or seven of `impacts` "
-     "(docs/protocol.md), with spaces"},
+     "(viewer/PROTOCOL.md), with spaces"},
 });
 
 /// What a value must be, in words: `a number from 0 to 1`.

@@ -1,4 +1,4 @@
-// The functions that a page calls (docs/protocol.md). Each module has one session.
+// The functions that a page calls (viewer/PROTOCOL.md). Each module has one session.
 
 #include <cstddef>
 #include <cstdint>

@@ -77,7 +77,7 @@ def map_frames(
     A task has several frames, as many as take a second together; `chunk` is another number of frames, 1 or
     more. Each worker has at most two tasks, so memory does not grow with the number of frames, but all
     results are kept: a function with large results writes them to files. A task costs 0.1 to 6 ms in addition
-    to its frames (docs/frames.md).
+    to its frames (docs/distributed.md).
     """
     return run(
         "map_frames",

@@ -25,7 +25,7 @@ SCENE, FRAME, ANSWER, FAILURE = 1, 2, 3, 4
 
 
 class Page:
-    """A page that draws nothing: a WebSocket (RFC 6455) and the messages of docs/protocol.md."""
+    """A page that draws nothing: a WebSocket (RFC 6455) and the messages of viewer/PROTOCOL.md."""
 
     opened: ClassVar[list["Page"]] = []
 
@@ -275,11 +275,11 @@ def test_refuses_wrong_options():
 def test_examples_of_the_document(monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/attach.md").read_text(), re.DOTALL)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/viewer.md").read_text(), re.DOTALL)
     assert blocks
     for block in blocks:
         names = {}
-        exec(compile(block, "docs/attach.md", "exec"), names)  # noqa: S102
+        exec(compile(block, "docs/viewer.md", "exec"), names)  # noqa: S102
         assert names["view"].steps == 300
 
 

@@ -54,13 +54,6 @@ def test_the_example_prints_the_output_of_the_document(ranks):
     assert run_on_ranks(ranks, EXAMPLE) == re.search(r"^```text\n(.*?)^```$", text, re.M | re.S)[1]
 
 
-def test_the_document_has_the_example():
-    text, example = (ROOT / "docs/distributed.md").read_text(), EXAMPLE.read_text()
-    assert re.findall(r"^```python\n(.*?)^```$", text, re.M | re.S) == [
-        example[example.index("import numpy") :]
-    ]
-
-
 def test_a_package_without_mpi(monkeypatch):
     monkeypatch.setitem(sys.modules, "supple._distributed", None)
     _distributed_scene._compiled.cache_clear()

@@ -27,7 +27,11 @@ def test_examples(name, tmp_path, monkeypatch):
         exec(compile(block, name, "exec"), names)  # noqa: S102
 
 
-FRAMES = re.findall(r"```python\n(.*?)```", (ROOT / "docs/frames.md").read_text(), re.DOTALL)
+FRAMES = [
+    block
+    for page in ("docs/distributed.md", "experiments/README.md")
+    for block in re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+]
 
 
 @pytest.mark.parametrize("number", range(len(FRAMES)))

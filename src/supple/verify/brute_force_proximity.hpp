@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "verify/distance_algebra.hpp"
 #include "core/parallel.hpp"
 #include "supple/proximity.hpp"
 #include "supple/result.hpp"
 #include "verify/brute_force_elements.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple {
 

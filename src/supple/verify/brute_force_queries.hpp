@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "verify/distance_algebra.hpp"
 #include "core/parallel.hpp"
 #include "supple/queries.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "verify/brute_force_contacts.hpp"
 #include "verify/brute_force_proximity.hpp"
+#include "verify/distance_algebra.hpp"
 #include "verify/plain_surface.hpp"
 
 // Answers to queries, decided for `verify` over all triangles by rationals and integers. Double precision

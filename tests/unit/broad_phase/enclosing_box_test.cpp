@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "verify/distance_algebra.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/error.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple::enclosing_box_test {
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "verify/distance_algebra.hpp"
 #include "geometry/vector.hpp"
 #include "support/random.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple::edge_face_crossing_test {
 

@@ -9,11 +9,11 @@
 #include <optional>
 #include <vector>
 
-#include "verify/distance_algebra.hpp"
 #include "geometry/vector.hpp"
 #include "supple/distance.hpp"
 #include "supple/error.hpp"
 #include "support/soups.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple::element_distance_test {
 

@@ -9,9 +9,9 @@
 
 namespace supple::extreme_points_test {
 
-using truth::rational;
 using truth::pair_families;
 using truth::PairFamily;
+using truth::rational;
 using truth::Rational;
 using truth::RationalPoint;
 using truth::scaled_count;
@@ -49,7 +49,8 @@ bool named_canonically(const TrianglePoints& triangle, Feature feature) {
 /// The extent of an edge along one axis; 0 for other features.
 Rational edge_extent(const TrianglePoints& triangle, Feature feature, std::size_t axis) {
   if (feature.kind != FeatureKind::edge) return 0;
-  return abs(rational(corner(triangle, feature.index + 1))[axis] - rational(corner(triangle, feature.index))[axis]);
+  return abs(rational(corner(triangle, feature.index + 1))[axis] -
+             rational(corner(triangle, feature.index))[axis]);
 }
 
 void expect_accurate(const TrianglePair3d& pair, const ContactPoint& point, const RationalPoint& truth) {
@@ -79,7 +80,7 @@ void expect_convex_order(const std::vector<RationalPoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const RationalPoint& next = points[(i + 1) % points.size()];
     const RationalPoint turn = truth::cross(truth::subtract(next, points[i]),
-                                              truth::subtract(points[(i + 2) % points.size()], next));
+                                            truth::subtract(points[(i + 2) % points.size()], next));
     if (i == 0) normal = turn;
     EXPECT_GT(truth::dot(turn, normal), 0);
   }

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "verify/distance_algebra.hpp"
 #include "support/random.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple::brute_force_proximity_test {
 

@@ -59,7 +59,8 @@ Rational separating_move(const Box& a, const Box& b, const Vec3d& n) {
   for (std::size_t i = 0; i < 3; ++i) {
     directions.push_back(cross_of(rational(a.half[i]), rational(a.half[(i + 1) % 3])));
     directions.push_back(cross_of(rational(b.half[i]), rational(b.half[(i + 1) % 3])));
-    for (std::size_t k = 0; k < 3; ++k) directions.push_back(cross_of(rational(a.half[i]), rational(b.half[k])));
+    for (std::size_t k = 0; k < 3; ++k)
+      directions.push_back(cross_of(rational(a.half[i]), rational(b.half[k])));
   }
   std::optional<Rational> least;
   for (RationalVector m : directions) {

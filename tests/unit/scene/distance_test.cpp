@@ -10,7 +10,6 @@
 #include <tuple>
 #include <vector>
 
-#include "verify/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
@@ -19,6 +18,7 @@
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 #include "verify/brute_force_proximity.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple::distance_test {
 

@@ -9,12 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include "verify/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple::overlaps_test {
 

@@ -9,7 +9,6 @@
 #include <tuple>
 #include <vector>
 
-#include "verify/distance_algebra.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
@@ -18,6 +17,7 @@
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
+#include "verify/distance_algebra.hpp"
 
 namespace supple::queries_test {
 

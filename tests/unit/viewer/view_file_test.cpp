@@ -47,7 +47,7 @@ TEST(ViewFile, NamesTheMemberAndWhatItMustBe) {
   EXPECT_EQ(fault_of("{}"), "view.json: version is missing; write \"version\": 1");
   const auto fault = [](const std::string& member) { return fault_of("{\"version\": 1, " + member + "}"); };
   EXPECT_EQ(fault_of(R"({"version": 2})"), "view.json: version is not 1");
-  EXPECT_EQ(fault(R"("cameras": 1)"), "view.json: cameras is unknown; docs/view_file.md lists the members");
+  EXPECT_EQ(fault(R"("cameras": 1)"), "view.json: cameras is unknown; docs/viewer.md lists the members");
   EXPECT_EQ(fault(R"("camera": [])"), "view.json: camera is not an object { … }");
   EXPECT_EQ(fault(R"("camera": {"zoom": 0})"), "view.json: camera.zoom is not a finite number above 0");
   EXPECT_EQ(fault(R"("camera": {"zoom": 1e999})"), "view.json: it is not JSON: the error is at byte 34");

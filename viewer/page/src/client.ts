@@ -80,7 +80,7 @@ export class Client extends Emitter<ClientEvents> {
     if (this.status.state !== "ended" && !this.watches) this.transport?.send(command);
   }
 
-  /** Sends a result to the program (docs/protocol.md): what it is, and the content of a file. */
+  /** Sends a result to the program (viewer/PROTOCOL.md): what it is, and the content of a file. */
   async deliver(head: Record<string, unknown>, content?: Blob): Promise<void> {
     const text = new TextEncoder().encode(JSON.stringify(head));
     const length = new DataView(new ArrayBuffer(4));

@@ -1,7 +1,7 @@
 /**
  * What the user chose: camera, layers, marks, objects and panels, as one object that JSON can hold. A view file
  * has it, and the browser keeps it for each scene, so that it survives a reload and a restart of the program.
- * `protocol/view_members.ts` has the ranges of all members; docs/view_file.md describes them.
+ * `protocol/view_members.ts` has the ranges of all members; docs/viewer.md describes them.
  */
 import type { MapName } from "./fields/colour_maps";
 import { LAYERS, MOST_VIEWS, usualLook, type Layer, type Model, type NodeChoice, type SliceChoice } from "./model";

@@ -9,7 +9,7 @@
 namespace supple::viewer {
 
 // What each section of a message contains. The reader of the page (viewer/page/src/protocol/sections.ts) and
-// the table of docs/protocol.md are made from this list.
+// the table of viewer/PROTOCOL.md are made from this list.
 
 enum class ScalarOfSection : std::uint8_t { uint8, uint32, float32, float64 };
 

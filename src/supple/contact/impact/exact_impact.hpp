@@ -13,7 +13,7 @@ namespace supple {
 /// Takes 1 to 10 µs while the coordinates of an axis span at most 124 bits, from the largest number to the
 /// last bit of the most precise one. Wider spans, and polynomials with a double root where the elements come
 /// near, take integers of any length: mostly below 100 µs, but milliseconds where some coordinates are 2^1000
-/// times as large as others. docs/conventions.md has a table.
+/// times as large as others. docs/guarantees.md has a table.
 std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion);
 
 /// For elements that touch at the start: the first time after it at which they touch again. Nothing when they

@@ -336,7 +336,7 @@ export async function pageWithMessages(stage, file, alter, command = (text, send
   return page;
 }
 
-/** A message of the given kind with the given text (docs/protocol.md). */
+/** A message of the given kind with the given text (viewer/PROTOCOL.md). */
 export function textMessage(kind, json) {
   const text = Buffer.from(JSON.stringify(json));
   const length = 32 + Math.ceil(text.length / 16) * 16;

@@ -1,6 +1,6 @@
 /**
  * Draws pictures for `supple render`. The page contains the job, draws without a window, and sends each picture to
- * the program as a binary message (docs/protocol.md).
+ * the program as a binary message (viewer/PROTOCOL.md).
  */
 import type { Client } from "../client";
 import type { Model } from "../model";

@@ -1,4 +1,4 @@
-/** The messages of the session (docs/protocol.md): typed arrays that view the message, and texts. */
+/** The messages of the session (viewer/PROTOCOL.md): typed arrays that view the message, and texts. */
 import type { FieldForm } from "./field_form";
 import type { FORMS, Form } from "./sections";
 

@@ -1,5 +1,5 @@
 /**
- * Reads the binary messages of the session (docs/protocol.md). It validates all data that the page relies on
+ * Reads the binary messages of the session (viewer/PROTOCOL.md). It validates all data that the page relies on
  * and returns typed arrays that view the message; nothing is copied.
  */
 import type { AnswerMessage, FailureMessage, Message, SeriesMessage } from "./messages";
