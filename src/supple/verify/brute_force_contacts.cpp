@@ -7,8 +7,8 @@
 
 #include "mesh/share_vertex.hpp"
 #include "supple/triangle_intersection.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 #include "verify/brute_force_elements.hpp"
-#include "verify/distance_algebra.hpp"
 
 namespace supple {
 namespace {

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "verify/distance_algebra.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple {
 namespace {

@@ -8,8 +8,8 @@
 #include "core/parallel.hpp"
 #include "supple/proximity.hpp"
 #include "supple/result.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 #include "verify/brute_force_elements.hpp"
-#include "verify/distance_algebra.hpp"
 
 namespace supple {
 

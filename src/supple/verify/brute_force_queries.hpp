@@ -8,9 +8,9 @@
 #include "core/parallel.hpp"
 #include "supple/queries.hpp"
 #include "supple/triangle_intersection.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 #include "verify/brute_force_contacts.hpp"
 #include "verify/brute_force_proximity.hpp"
-#include "verify/distance_algebra.hpp"
 #include "verify/plain_surface.hpp"
 
 // Answers to queries, decided for `verify` over all triangles by rationals and integers. Double precision

@@ -11,7 +11,7 @@
 #include "supple/broad_phase.hpp"
 #include "supple/error.hpp"
 #include "unit/broad_phase/volume_scenes.hpp"
-#include "verify/distance_algebra.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple::enclosing_box_test {
 

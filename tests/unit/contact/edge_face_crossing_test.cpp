@@ -9,7 +9,7 @@
 
 #include "geometry/vector.hpp"
 #include "support/random.hpp"
-#include "verify/distance_algebra.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple::edge_face_crossing_test {
 

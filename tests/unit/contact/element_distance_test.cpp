@@ -13,7 +13,7 @@
 #include "supple/distance.hpp"
 #include "supple/error.hpp"
 #include "support/soups.hpp"
-#include "verify/distance_algebra.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple::element_distance_test {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/random.hpp"
-#include "verify/distance_algebra.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple::brute_force_proximity_test {
 

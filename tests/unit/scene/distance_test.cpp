@@ -17,8 +17,8 @@
 #include "supple/trigonometry.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 #include "verify/brute_force_proximity.hpp"
-#include "verify/distance_algebra.hpp"
 
 namespace supple::distance_test {
 

@@ -14,7 +14,7 @@
 #include "supple/scene.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
-#include "verify/distance_algebra.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple::overlaps_test {
 

@@ -17,7 +17,7 @@
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
-#include "verify/distance_algebra.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple::queries_test {
 

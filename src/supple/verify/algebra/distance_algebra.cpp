@@ -1,4 +1,4 @@
-#include "verify/distance_algebra.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 #include <algorithm>
 #include <cmath>
