@@ -88,7 +88,7 @@ std::string markdown(std::string text) {
 }
 
 /// Whether docs/options.md lists the option: it has the key of an option of a scene or an object.
-bool is_in_tables(const CLI::Option* option) {
+bool is_listed_elsewhere(const CLI::Option* option) {
   static const std::vector<std::string> keys = keys_of_tables();
   std::string key = replaced(option->get_name(false, true), "-", "_").substr(2);
   if (key.starts_with("no_")) key.erase(0, 3);
@@ -116,7 +116,7 @@ void print_markdown_options(const CLI::App& app, const std::vector<SharedOption>
     if (!is_documented(option)) continue;
     if (is_shared(option, shared))
       append(names, replaced(option->get_name(false, true), ",", ", "));
-    else if (is_in_tables(option))
+    else if (is_listed_elsewhere(option))
       append(with_other_defaults, with_default(option));
     else
       fmt::print("| `{}` | {} |\n", markdown(spelling(option)), option->get_description());
@@ -136,7 +136,7 @@ void print_shared_markdown_options(const std::vector<SharedOption>& all) {
       "The other options that several commands have:\n\n"
       "| Option | Meaning | Commands |\n|---|---|---|\n");
   for (const SharedOption& shared : all)
-    if (!is_in_tables(shared.option))
+    if (!is_listed_elsewhere(shared.option))
       fmt::print("| `{}` | {} | {} |\n", markdown(spelling(shared.option)), shared.option->get_description(),
                  fmt::join(shared.commands, ", "));
 }
