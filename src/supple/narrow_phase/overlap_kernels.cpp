@@ -32,6 +32,14 @@ HWY_INLINE hn::Mask<Tag> overlapping(Tag tag, const Boxes& boxes, std::size_t fi
   return hn::And(x, hn::And(y, z));
 }
 
+template <class Tag, class Boxes>
+HWY_INLINE std::uint64_t overlapping_bits(Tag tag, const Boxes& boxes, std::size_t count, const Aabb& box) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(tag))
+    bits |= mask_bits(tag, overlapping(tag, boxes, i, box)) << i;
+  return bits;
+}
+
 /// Moves and grows the boxes of six arrays.
 template <class Arrays>
 HWY_INLINE void place(Arrays& boxes, const RelativePlacement& placement) {
@@ -61,10 +69,7 @@ void BoxOverlapMasks(const NodePair* pairs, std::size_t count, const ChildBoxes*
     std::uint64_t mask = 0;
     for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      const Aabb box = child_box(boxes_a, i);
-      for (std::size_t j = 0; j < node_width; j += hn::Lanes(tag)) {
-        mask |= mask_bits(tag, overlapping(tag, *boxes_b, j, box)) << (node_width * i + j);
-      }
+      mask |= overlapping_bits(tag, *boxes_b, node_width, child_box(boxes_a, i)) << (node_width * i);
     }
     masks[k] = mask;
   }
@@ -215,14 +220,11 @@ void LoadLeafBoxes(const LeafArrays& object, std::uint32_t leaf_number, std::uin
   }
 }
 
-/// The triangles of a block whose boxes overlap `box`.
-HWY_INLINE std::uint64_t overlapping_triangles(const LeafBoxes& leaf, const Aabb& box) {
-  const BoxTag tag;
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < leaf.size; i += hn::Lanes(tag)) {
-    bits |= mask_bits(tag, overlapping(tag, leaf, i, box)) << i;
-  }
-  return bits & leaf.triangles;
+std::uint64_t OverlappingChildren(const Aabb& box, const ChildBoxes& boxes) {
+  return overlapping_bits(hn::CappedTag<float, node_width>(), boxes, node_width, box);
+}
+HWY_INLINE std::uint64_t OverlappingTriangles(const Aabb& box, const LeafBoxes& leaf) {
+  return overlapping_bits(BoxTag(), leaf, leaf.size, box) & leaf.triangles;
 }
 
 HWY_INLINE BoxMask mask_of(std::uint64_t bits) {
@@ -330,7 +332,7 @@ class LeafTests {
 
   HWY_INLINE std::uint64_t near(const LeafBoxes& boxes, const Aabb& leaf) {
     tests_ += boxes.size;
-    return overlapping_triangles(boxes, leaf);
+    return OverlappingTriangles(leaf, boxes);
   }
 
   /// Tests each of `ones` against vectors of `others`; in a block against itself, only with later triangles.
@@ -400,6 +402,8 @@ namespace supple {
 
 HWY_EXPORT(BoxOverlapMasks);
 HWY_EXPORT(LoadLeafBoxes);
+HWY_EXPORT(OverlappingChildren);
+HWY_EXPORT(OverlappingTriangles);
 HWY_EXPORT(TriangleBoxPairs);
 
 void overlap_masks(std::span<const NodePair> pairs, const ChildBoxes* a, const ChildBoxes* b,
@@ -410,6 +414,13 @@ void overlap_masks(std::span<const NodePair> pairs, const ChildBoxes* a, const C
 void load_leaf_boxes(const LeafArrays& object, std::uint32_t leaf, std::uint32_t begin, std::uint32_t end,
                      LeafBoxes& boxes) {
   HWY_DYNAMIC_DISPATCH(LoadLeafBoxes)(object, leaf, begin, end, boxes);
+}
+
+std::uint32_t overlapping_children(const Aabb& box, const ChildBoxes& boxes) {
+  return static_cast<std::uint32_t>(HWY_DYNAMIC_DISPATCH(OverlappingChildren)(box, boxes));
+}
+std::uint64_t overlapping_triangles(const Aabb& box, const LeafBoxes& boxes) {
+  return HWY_DYNAMIC_DISPATCH(OverlappingTriangles)(box, boxes);
 }
 
 std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, const LeafArrays& a,

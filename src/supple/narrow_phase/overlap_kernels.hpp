@@ -111,6 +111,10 @@ struct LeafArrays {
 void load_leaf_boxes(const LeafArrays& object, std::uint32_t leaf, std::uint32_t begin, std::uint32_t end,
                      LeafBoxes& boxes);
 
+/// The children or triangles whose boxes overlap the box; bits of missing children are unspecified.
+std::uint32_t overlapping_children(const Aabb& box, const ChildBoxes& boxes);
+std::uint64_t overlapping_triangles(const Aabb& box, const LeafBoxes& boxes);
+
 /// Appends all pairs of triangles of the leaf pairs whose boxes may overlap, numbered in octree order. Skips
 /// inert triangles. With `same_object`, skips pairs that share a vertex and appends each pair once, a < b or
 /// b < a. Never misses an overlap. Returns the number of box tests.

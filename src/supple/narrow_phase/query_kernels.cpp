@@ -43,29 +43,6 @@ std::uint64_t NearTriangles(const PointBounds& point, const LeafBoxes& boxes, fl
   return near & boxes.triangles;
 }
 
-template <class Tag, class Boxes>
-HWY_INLINE std::uint64_t overlapping(Tag d, const Aabb& box, const Boxes& boxes, std::size_t count) {
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const auto axis = [&](const float* low, const float* high, float box_low, float box_high) HWY_ATTR {
-      return hn::And(hn::Le(hn::Load(d, low + i), hn::Set(d, box_high)),
-                     hn::Ge(hn::Load(d, high + i), hn::Set(d, box_low)));
-    };
-    const auto overlap = hn::And(axis(boxes.min_x, boxes.max_x, box.min.x, box.max.x),
-                                 hn::And(axis(boxes.min_y, boxes.max_y, box.min.y, box.max.y),
-                                         axis(boxes.min_z, boxes.max_z, box.min.z, box.max.z)));
-    bits |= mask_bits(d, overlap) << i;
-  }
-  return bits;
-}
-
-std::uint64_t OverlappingChildren(const Aabb& box, const ChildBoxes& boxes) {
-  return overlapping(hn::CappedTag<float, node_width>(), box, boxes, node_width);
-}
-std::uint64_t OverlappingTriangles(const Aabb& box, const LeafBoxes& boxes) {
-  return overlapping(hn::CappedTag<float, 16>(), box, boxes, boxes.size) & boxes.triangles;
-}
-
 /// Lower bounds for the boxes from `first` on.
 template <class Tag, class Boxes>
 HWY_INLINE hn::Vec<Tag> bounds_of(Tag d, const RaySlabs& ray, const Boxes& boxes, std::size_t first) {
@@ -123,8 +100,6 @@ namespace supple {
 
 HWY_EXPORT(SquaredDistances);
 HWY_EXPORT(NearTriangles);
-HWY_EXPORT(OverlappingChildren);
-HWY_EXPORT(OverlappingTriangles);
 HWY_EXPORT(RayBounds);
 HWY_EXPORT(TrianglesOnRay);
 
@@ -133,12 +108,6 @@ void squared_distances(const PointBounds& point, const ChildBoxes& boxes, std::a
 }
 std::uint64_t near_triangles(const PointBounds& point, const LeafBoxes& boxes, float limit) {
   return HWY_DYNAMIC_DISPATCH(NearTriangles)(point, boxes, limit);
-}
-std::uint32_t overlapping_children(const Aabb& box, const ChildBoxes& boxes) {
-  return static_cast<std::uint32_t>(HWY_DYNAMIC_DISPATCH(OverlappingChildren)(box, boxes));
-}
-std::uint64_t overlapping_triangles(const Aabb& box, const LeafBoxes& boxes) {
-  return HWY_DYNAMIC_DISPATCH(OverlappingTriangles)(box, boxes);
 }
 void ray_bounds(const RaySlabs& ray, const ChildBoxes& boxes, std::array<double, 8>& bounds) {
   HWY_DYNAMIC_DISPATCH(RayBounds)(ray, boxes, bounds.data());

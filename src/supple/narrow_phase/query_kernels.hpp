@@ -21,10 +21,6 @@ void squared_distances(const PointBounds& point, const ChildBoxes& boxes, std::a
 /// The triangles of a block whose boxes have such a squared distance of at most `limit`.
 std::uint64_t near_triangles(const PointBounds& point, const LeafBoxes& boxes, float limit);
 
-/// The children or triangles whose boxes overlap the box; bits of missing children are unspecified.
-std::uint32_t overlapping_children(const Aabb& box, const ChildBoxes& boxes);
-std::uint64_t overlapping_triangles(const Aabb& box, const LeafBoxes& boxes);
-
 /// A ray as the boxes of an object see it: its origin between two points, and the reciprocals of its
 /// direction. An axis along which the direction is too small or too large for reciprocals is `unlimited`.
 struct RaySlabs {

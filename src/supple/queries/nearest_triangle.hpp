@@ -32,8 +32,13 @@ class NearestTriangle {
  public:
   /// After a request to stop, it decides nothing more.
   NearestTriangle(std::span<const QueriedObject> objects, const Vec3d& point, double max_distance,
-                  const StopSignal& stop, std::vector<NearTriangle>& candidates)
-      : objects_(objects), point_(point), max_distance_(max_distance), stop_(stop), candidates_(candidates) {
+                  const StopSignal& stop, std::vector<NearTriangle>& candidates, PointsBlock& block)
+      : objects_(objects),
+        point_(point),
+        max_distance_(max_distance),
+        stop_(stop),
+        candidates_(candidates),
+        block_(block) {
     candidates_.clear();
     set_limit(max_distance);
   }
@@ -65,72 +70,71 @@ class NearestTriangle {
       if (lower[i] <= limit_) candidates_.push_back({lower[i], index, list[i].a});
     }
     // Many candidates: the bounds of distances are too rough here, so that only a plane helps.
-    if (candidates_.size() > most_candidates) decide();
+    if (candidates_.size() > most_candidates) find_plane();
   }
 
-  /// Decides between the triangles that were kept. The nearest one first, which discards most of the others.
+  /// Sets a plane through the nearest point so far, if there is one.
+  void find_plane() {
+    decide();
+    if (found_ && !has_plane_) set_planes();
+  }
+
+  /// Decides between the triangles that were kept.
   void decide() {
-    if (candidates_.empty()) return;
-    std::swap(candidates_.front(), *std::min_element(candidates_.begin(), candidates_.end(),
-                                                     [](const NearTriangle& p, const NearTriangle& q) {
-                                                       return p.distance < q.distance;
-                                                     }));
-    for (const NearTriangle& candidate : candidates_) {
-      if (stop_.stop_requested()) break;
-      if (candidate.distance <= limit_) decide(candidate.object, candidate.triangle);
+    std::erase_if(candidates_, [&](const NearTriangle& candidate) { return candidate.distance > limit_; });
+    std::array<FeatureCode, PointsBlock::capacity> codes;
+    for (std::size_t first = 0; first < candidates_.size(); first += codes.size()) {
+      const auto part = std::span(candidates_).subspan(first);
+      const std::size_t count = std::min(part.size(), codes.size());
+      for (std::size_t i = 0; i < count; ++i) {
+        const TrianglePoints corners = objects_[part[i].object].corners(part[i].triangle);
+        block_.set(0, i, point_);
+        for (std::size_t k = 0; k < 3; ++k) block_.set(k + 1, i, corners[k]);
+      }
+      classify(block_, count, false, limit_, codes.data());
+      for (std::size_t i = 0; i < count && !stop_.stop_requested(); ++i) {
+        if (codes[i] != FeatureCode::apart && part[i].distance <= limit_)
+          decide(part[i].object, part[i].triangle, codes[i]);
+      }
     }
     candidates_.clear();
   }
-  void decide(std::uint32_t index, std::uint32_t t) {
-    if (found_ && index_ == index && triangle_ == t) return;
+  void decide(std::uint32_t index, std::uint32_t t, FeatureCode code) {
+    if (found_ && found_->object == index && found_->triangle == t) return;
     const QueriedObject& object = objects_[index];
-    const TrianglePoints corners = object.corners(t);
-    const std::uint32_t id = object.triangle_ids[t];
-    if (has_plane_ && is_behind(corners)) return;
-    // It is not nearer, and comes later.
-    if (has_plane_ && depth_of(corners) >= 0 && std::tie(index_, id_) < std::tie(index, id)) return;
+    FoundTriangle other{point_, object.corners(t), {}, index, t, object.triangle_ids[t]};
+    const auto comes_later = [&] {
+      return std::tie(found_->object, found_->id) < std::tie(other.object, other.id);
+    };
+    if (has_plane_ && (is_behind(other.corners) || (depth_of(other.corners) >= 0 && comes_later()))) return;
     ++decided_;
-    const ElementPoints elements = point_and_triangle(point_, corners);
-    const auto found = distance_within(elements, limit_, used_exact_);
-    if (!found) return;
-    const FeatureName feature = name_of(found->on_b, object.triangles[t], id);
+    const auto features = code == FeatureCode::unknown
+                              ? closest_features_within(other.elements(), limit_, used_exact_)
+                              : std::optional(features_of_code(code, false));
+    if (!features) return;
+    other.features = *features;
+    const FeatureName feature = name_of(features_of_elements(*features, 1)[1], object.triangles[t], other.id);
     if (found_) {
-      const bool is_same_feature = index_ == index && feature_ == feature;
-      const int side = is_same_feature
-                           ? 0
-                           : compare_distances(elements, point_and_triangle(point_, corners_), used_exact_);
-      if (side > 0 || (side == 0 && std::tie(index_, id_) < std::tie(index, id))) return;
+      const bool is_same_feature = found_->object == index && feature_ == feature;
+      const int side =
+          is_same_feature ? 0 : compare_distances(other.elements(), found_->elements(), used_exact_);
+      if (side > 0 || (side == 0 && comes_later())) return;
     }
-    found_ = found;
-    corners_ = corners;
-    index_ = index;
-    triangle_ = t;
-    id_ = id;
+    found_ = other;
     feature_ = feature;
-    has_plane_ = found->distance > 0;
-    set_planes();
-    set_limit(std::min(max_distance_, found->distance * (1 + 0x1p-36) + 0x1p-1060));
+    // Where there are no bounds, or vector kernels cannot decide, a plane helps.
+    if (has_plane_ || code == FeatureCode::unknown || limit_ == max_distance_) set_planes();
   }
 
   /// How many triangles it decided exactly.
   std::uint64_t decided() const { return decided_; }
   /// How many distances it bounded.
   std::uint64_t bounded() const { return bounded_; }
-  std::uint32_t object() const { return index_; }
-  /// In octree order.
-  std::uint32_t triangle() const { return triangle_; }
-
-  std::optional<ClosestPoint> result() const {
-    if (!found_) return {};
-    return ClosestPoint{
-        objects_[index_].id, id_,           found_->on_b, found_->distance, found_->barycentric_b,
-        found_->point_b,     found_->normal};
-  }
+  const std::optional<FoundTriangle>& found() const { return found_; }
 
  private:
   bool is_behind(const QueryBox& box, double depth) const {
-    return are_farther(planes_[0], {point_, point_}, 0, planes_[1], box, depth,
-                       found_->distance * (1 + 0x1p-48));
+    return are_farther(planes_[0], {point_, point_}, 0, planes_[1], box, depth, distance_ * (1 + 0x1p-48));
   }
   bool is_behind(const TrianglePoints& corners) const {
     return is_behind(box_of(corners), depth_of(corners));
@@ -140,13 +144,18 @@ class NearestTriangle {
         {planes_[1].depth(corners[0]), planes_[1].depth(corners[1]), planes_[1].depth(corners[2])});
   }
   void set_planes() {
-    const std::size_t first = found_->on_b.kind == FeatureKind::face ? 0 : found_->on_b.index;
-    const auto& weights = found_->barycentric_b;
+    const ElementDistance found = distance_of(found_->elements(), found_->features, used_exact_);
+    const std::size_t first = found.on_b.kind == FeatureKind::face ? 0 : found.on_b.index;
+    const auto& weights = found.barycentric_b;
     const std::size_t second = (first + 1) % 3, third = (first + 2) % 3;
-    const FeatureVertices on_triangle{{corners_[first], corners_[second], corners_[third]},
-                                      static_cast<std::size_t>(found_->on_b.kind) + 1};
+    const TrianglePoints& corners = found_->corners;
+    const FeatureVertices on_triangle{{corners[first], corners[second], corners[third]},
+                                      static_cast<std::size_t>(found.on_b.kind) + 1};
     planes_ = support_planes({{point_}, 1}, {1, 0, 0}, on_triangle,
-                             {weights[first], weights[second], weights[third]}, found_->normal);
+                             {weights[first], weights[second], weights[third]}, found.normal);
+    distance_ = found.distance;
+    has_plane_ = distance_ > 0;
+    set_limit(std::min(limit_, distance_ * (1 + 0x1p-36) + 0x1p-1060));
   }
   void set_limit(double limit) {
     limit_ = limit;
@@ -160,11 +169,11 @@ class NearestTriangle {
   static constexpr std::size_t most_candidates = 256;
   const StopSignal& stop_;
   std::vector<NearTriangle>& candidates_;
-  std::optional<ElementDistance> found_;
+  PointsBlock& block_;
+  std::optional<FoundTriangle> found_;
   std::array<SupportPlane, 2> planes_;  // of the point and of the triangle
+  double distance_ = 0;                 // of the two
   bool has_plane_ = false;
-  TrianglePoints corners_;
-  std::uint32_t index_ = 0, triangle_ = 0, id_ = 0;
   FeatureName feature_;
   bool used_exact_ = false;
   std::uint64_t decided_ = 0, bounded_ = 0;

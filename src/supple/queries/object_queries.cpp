@@ -237,10 +237,10 @@ void ObjectQueries::start(const StopSignal& stop) {
   recent_.clear();
 }
 
-std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
-                                                   double max_distance) {
+std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObject> objects,
+                                                    const Vec3d& point, double max_distance) {
   if (!is_finite(point)) return {};
-  NearestTriangle nearest(objects, point, max_distance, stop_, candidates_);
+  NearestTriangle nearest(objects, point, max_distance, stop_, candidates_, block_);
   const auto bound_of = [&](const Aabb& box) { return distance_bound(point, box); };
   if (last_nearest_) nearest.consider(last_nearest_->object, last_nearest_->triangle, 1);
   order(objects, bound_of, nearest.limit());
@@ -251,9 +251,9 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
     const PointBounds seen = seen_by(object, point);
     // Distances in single precision hardly tell its triangles apart, so the search needs a plane.
     if (is_far(object.box, object_bound, far_ratio)) {
-      nearest.decide(index, frontmost_triangle(object, point));
+      nearest.decide(index, frontmost_triangle(object, point), FeatureCode::unknown);
       // The triangle of the query before was nearer than the frontmost one.
-      if (!nearest.has_plane()) nearest.decide();
+      if (!nearest.has_plane()) nearest.find_plane();
     }
     descent_.run(
         object.view,
@@ -272,9 +272,18 @@ std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject
   nearest.decide();
   decided_ += nearest.decided();
   bounded_ += nearest.bounded();
-  const std::optional<ClosestPoint> result = nearest.result();
-  if (result) last_nearest_ = {0, nearest.object(), nearest.triangle()};
-  return result;
+  if (nearest.found()) last_nearest_ = {0, nearest.found()->object, nearest.found()->triangle};
+  return nearest.found();
+}
+
+std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
+                                                   double max_distance) {
+  const std::optional<FoundTriangle> found = nearest(objects, point, max_distance);
+  if (!found) return {};
+  bool used_exact = false;
+  const ElementDistance distance = distance_of(found->elements(), found->features, used_exact);
+  return ClosestPoint{objects[found->object].id, found->id,        distance.on_b,  distance.distance,
+                      distance.barycentric_b,    distance.point_b, distance.normal};
 }
 
 /// Calls `visit(hit)` with the triangles on the ray up to `limit`, which may decrease.

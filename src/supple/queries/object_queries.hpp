@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/distance/distance_kernels.hpp"
 #include "contact/distance/ray_triangle.hpp"
 #include "core/stop_signal.hpp"
 #include "narrow_phase/ordered_descent.hpp"
@@ -54,6 +55,17 @@ struct NearTriangle {
   std::uint32_t object = 0, triangle = 0;
 };
 
+/// A point, its nearest triangle, and the features that hold the closest points.
+struct FoundTriangle {
+  Vec3d point;
+  TrianglePoints corners;
+  ClosestFeatures features;
+  std::uint32_t object = 0, triangle = 0,
+                id = 0;  ///< by object in a list of objects, in octree order, the user's
+
+  ElementPoints elements() const { return {{point, corners[0], corners[1], corners[2]}, 1, 3}; }
+};
+
 /// A triangle on a ray: its place on the ray, its object in a list of objects, and the user's number.
 struct TriangleOnRay {
   RayParameter parameter;
@@ -66,15 +78,19 @@ class ObjectQueries {
   /// Call before queries to another list of objects, or after they changed. After a request to stop, queries
   /// end early, and their results are of no use.
   void start(const StopSignal& stop = {});
-  /// Looks first at the triangle that was nearest to the point before: for points that are close to each
-  /// other, hardly any other triangle is nearer.
+  /// The nearest triangle of a finite point; of several, the first by object and number. Vector kernels
+  /// decide most features, and nothing is computed that the decision does not need. Looks first at the
+  /// triangle that was nearest to the point before: for points that are close to each other, hardly any other
+  /// triangle is nearer.
+  std::optional<FoundTriangle> nearest(std::span<const QueriedObject> objects, const Vec3d& point,
+                                       double max_distance);
   std::optional<ClosestPoint> closest(std::span<const QueriedObject> objects, const Vec3d& point,
                                       double max_distance);
-  /// The triangle of the last result of `closest`, in octree order.
+  /// The triangle of the last result of `nearest`, in octree order.
   std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
-  /// How many triangles `closest` and the rays have decided exactly.
+  /// How many triangles `nearest` and the rays have decided exactly.
   std::uint64_t decided() const { return decided_; }
-  /// How many triangles `closest` has bounded.
+  /// How many triangles `nearest` has bounded.
   std::uint64_t bounded() const { return bounded_; }
   std::optional<RayHit> cast(std::span<const QueriedObject> objects, const Ray& ray, bool count_hits);
   /// Appends all triangles on the ray, ordered by t, object and triangle.
@@ -117,6 +133,7 @@ class ObjectQueries {
   std::optional<NearTriangle> last_nearest_;
   std::vector<TriangleOnRay> on_ray_;  // of `cast_all`
   std::vector<NearTriangle> candidates_;
+  PointsBlock block_{};  // of the nearest triangle
   OrderedDescent descent_;
   std::vector<std::uint32_t> nodes_;
   RecentLeafBoxes recent_;

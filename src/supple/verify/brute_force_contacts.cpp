@@ -22,13 +22,13 @@ TrianglePoints points_of(const PlainObject& object, std::uint32_t triangle) {
 bool overlap_beside_edge(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b) {
   const RationalVector zero{}, from = exact(p), u = minus(exact(q), from), to_a = minus(exact(a), from),
                                to_b = minus(exact(b), from);
-  if (u == zero) return cross_of(to_a, to_b) == zero && dot_of(to_a, to_b) > 0;
-  const RationalVector of_a = cross_of(u, to_a), of_b = cross_of(u, to_b);
+  if (u == zero) return cross(to_a, to_b) == zero && dot(to_a, to_b) > 0;
+  const RationalVector of_a = cross(u, to_a), of_b = cross(u, to_b);
   if (of_a == zero && of_b == zero) {
-    const Rational at_a = dot_of(u, to_a), at_b = dot_of(u, to_b), end = dot_of(u, u);
+    const Rational at_a = dot(u, to_a), at_b = dot(u, to_b), end = dot(u, u);
     return (at_a < 0 && at_b < 0) || (at_a > end && at_b > end);
   }
-  return cross_of(of_a, of_b) == zero && dot_of(of_a, of_b) > 0;
+  return cross(of_a, of_b) == zero && dot(of_a, of_b) > 0;
 }
 
 /// Whether two triangles with vertices in common share a point of no common vertex or edge. A segment or a

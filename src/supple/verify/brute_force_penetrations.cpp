@@ -106,8 +106,9 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
         expected.where == Containment::inside ? is_inside && !is_on : is_on && !is_inside;
     if (!is_right_list)
       note(expected.vertex, Fault::missed);
-    else if (is_inside && (next_inside->triangle != expected.triangle ||
-                           !is_within_units(next_inside->depth, expected.squared_depth, 4)))
+    else if (is_inside &&
+             (next_inside->triangle != expected.triangle ||
+              !is_accurate(next_inside->depth, expected.squared_depth.over, expected.squared_depth.under)))
       note(expected.vertex, Fault::inexact);
     if (is_inside) ++next_inside;
     if (is_on) ++next_on;

@@ -20,7 +20,7 @@ struct ExactPenetration {
   std::uint32_t vertex = 0;
   Containment where = Containment::inside;
   std::uint32_t triangle = 0;  ///< the nearest one, if inside; the smallest of several
-  SquaredDistance squared_depth;
+  Fraction squared_depth;
 };
 
 struct BruteForcePenetrations {

@@ -139,7 +139,7 @@ BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, co
                                                   ElementKinds kinds, const Parallel& parallel) {
   const BoxedElements of_a = boxed_elements(a), of_b = boxed_elements(b);
   const bool is_bounded = reach <= std::numeric_limits<double>::max();
-  const Rational squared_reach = is_bounded ? Rational(reach) * Rational(reach) : Rational(0);
+  const Rational squared_reach = is_bounded ? squared(reach) : Rational(0);
   BruteForceProximity result;
   result.pairs_checked = element_pairs(of_a, of_b, same_object);
   const auto decide = [&](SortedElement first, SortedElement second,

@@ -34,12 +34,12 @@ std::optional<ExactNearest> nearest_by_brute_force(const Vec3d& point, std::span
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     if (surfaces[s].triangles.empty()) continue;
     PlainSurface::Nearest found = surfaces[s].nearest(point);
-    if (nearest && compare(found.squared, nearest->squared) >= 0) continue;
+    if (nearest && found.squared.compare(nearest->squared) >= 0) continue;
     nearest = std::move(found);
     nearest_surface = s;
   }
   const bool is_bounded = max_distance <= std::numeric_limits<double>::max();
-  if (!nearest || (is_bounded && compare(nearest->squared, square_of(max_distance)) > 0)) return {};
+  if (!nearest || (is_bounded && nearest->squared.value() > squared(max_distance))) return {};
   const TrianglePoints& corners = surfaces[nearest_surface].triangles[nearest->place].corners;
   return ExactNearest{nearest_surface, nearest->triangle, distance_by_algebra({&point, 1}, corners)};
 }
@@ -97,13 +97,13 @@ bool clearly_misses(const Ray& ray, const std::array<Vec3d, 2>& axes, const Tria
 std::optional<Rational> first_parameter(const Ray& ray, const std::array<Vec3d, 2>& axes,
                                         const TrianglePoints& corners) {
   const RationalVector direction = exact(ray.direction);
-  const Rational squared = dot_of(direction, direction);
+  const Rational squared = dot(direction, direction);
   std::array<std::array<Rational, 2>, 3> flat;
   std::array<Rational, 3> t;
   for (std::size_t i = 0; i < 3; ++i) {
     const RationalVector to_corner = minus(exact(corners[i]), exact(ray.origin));
-    for (std::size_t k = 0; k < 2; ++k) flat[i][k] = dot_of(exact(axes[k]), to_corner);
-    t[i] = dot_of(direction, to_corner) / squared;
+    for (std::size_t k = 0; k < 2; ++k) flat[i][k] = dot(exact(axes[k]), to_corner);
+    t[i] = dot(direction, to_corner) / squared;
   }
   const auto turn = [&](std::size_t i, std::size_t k) {
     return flat[i][0] * flat[k][1] - flat[i][1] * flat[k][0];
@@ -205,8 +205,7 @@ bool overlaps_by_brute_force(const QuerySphere& sphere, const BoxedCorners& tria
     return increased(scaled_norm(corner - sphere.center)) < sphere.radius;
   });
   if (has_corner_inside) return true;
-  return compare(squared_distance_by_integers(sphere.center, triangle.corners), square_of(sphere.radius)) <=
-         0;
+  return squared_distance_by_integers(sphere.center, triangle.corners).value() <= squared(sphere.radius);
 }
 
 namespace {

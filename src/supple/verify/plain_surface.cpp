@@ -1,72 +1,39 @@
 #include "verify/plain_surface.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
+#include "geometry/numbers/number_vector.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
 
-using BigInteger = boost::multiprecision::cpp_int;
-using IntegerVector = std::array<BigInteger, 3>;
+using sturm::Integer;
+using IntegerVector = NumberVector<Integer>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A double as mantissa · 2^exponent, with an odd mantissa or 0.
-struct OddMantissa {
-  std::int64_t mantissa = 0;
-  int exponent = 0;
-
-  explicit OddMantissa(double value) {
-    if (value == 0) return;
-    const double part = std::frexp(value, &exponent);
-    mantissa = static_cast<std::int64_t>(std::ldexp(part, 53));
-    const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
-    mantissa /= std::int64_t{1} << zeros;
-    exponent += zeros - 53;
+/// A point and the corners of a triangle, in units of 2^lowest.
+std::array<IntegerVector, 4> integers_of(const Vec3d& point, const TrianglePoints& corners, int& lowest) {
+  const std::array<Vec3d, 4> points{point, corners[0], corners[1], corners[2]};
+  lowest = std::numeric_limits<int>::max();
+  for (const Vec3d& p : points)
+    lowest = std::min({lowest, sturm::lowest_bit(p.x), sturm::lowest_bit(p.y), sturm::lowest_bit(p.z)});
+  std::array<IntegerVector, 4> integers;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (int axis = 0; axis < 3; ++axis)
+      integers[i][static_cast<std::size_t>(axis)] = sturm::to_integer(points[i][axis], lowest);
   }
-};
-
-IntegerVector difference(const IntegerVector& p, const IntegerVector& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+  if (lowest == std::numeric_limits<int>::max()) lowest = 0;
+  return integers;
 }
-BigInteger dot_of(const IntegerVector& p, const IntegerVector& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-IntegerVector cross_of(const IntegerVector& p, const IntegerVector& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-/// A point and a triangle in units of 2^lowest.
-struct IntegerCorners {
-  std::array<IntegerVector, 4> points;  // the point first
-  int lowest = std::numeric_limits<int>::max();
-
-  IntegerCorners(const Vec3d& point, const TrianglePoints& corners) {
-    const std::array<Vec3d, 4> all{point, corners[0], corners[1], corners[2]};
-    for (const Vec3d& p : all) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (p[axis] != 0) lowest = std::min(lowest, OddMantissa(p[axis]).exponent);
-      }
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const OddMantissa value(all[i][axis]);
-        BigInteger& number = points[i][static_cast<std::size_t>(axis)];
-        number = value.mantissa;
-        if (value.mantissa != 0) number <<= static_cast<unsigned>(value.exponent - lowest);
-      }
-    }
-    if (lowest == std::numeric_limits<int>::max()) lowest = 0;
-  }
-};
 
 /// The sign of a number with an error; nothing when it is not known.
 std::optional<int> sign_of(double value, double error) {
@@ -79,10 +46,10 @@ int turn_of(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
   const double first = (b.y - a.y) * (p.z - a.z), second = (b.z - a.z) * (p.y - a.y);
   const auto sign = sign_of(first - second, 0x1p-49 * (std::fabs(first) + std::fabs(second)) + 0x1p-1000);
   if (sign) return *sign;
-  const IntegerCorners exact(p, {a, b, b});
-  const IntegerVector u = difference(exact.points[2], exact.points[1]),
-                      w = difference(exact.points[0], exact.points[1]);
-  return BigInteger(u[1] * w[2] - u[2] * w[1]).sign();
+  int lowest = 0;
+  const auto [x, from, to, same] = integers_of(p, {a, b, b}, lowest);
+  const IntegerVector u = minus(to, from), w = minus(x, from);
+  return Integer(u[1] * w[2] - u[2] * w[1]).sign();
 }
 
 /// The same, where p is moved by (e, e²) for an infinitely small e > 0.
@@ -98,9 +65,9 @@ int side_of_plane(const TrianglePoints& t, const Vec3d& p) {
   const Vec3d size{m.y * n.z + m.z * n.y, m.z * n.x + m.x * n.z, m.x * n.y + m.y * n.x};
   const auto sign = sign_of(dot(cross(u, v), w), 0x1p-48 * dot(size, absolute(w)) + 0x1p-1000);
   if (sign) return *sign;
-  const IntegerCorners exact(p, t);
-  const auto& [x, a, b, c] = exact.points;
-  return dot_of(cross_of(difference(b, a), difference(c, a)), difference(x, a)).sign();
+  int lowest = 0;
+  const auto [x, a, b, c] = integers_of(p, t, lowest);
+  return dot(cross(minus(b, a), minus(c, a)), minus(x, a)).sign();
 }
 
 /// Whether the ray in the direction of x from beside the point crosses the triangle, which does not contain
@@ -175,55 +142,32 @@ void include(const Vec3d& low, const Vec3d& high, Vec3d& min, Vec3d& max) {
 
 }  // namespace
 
-int compare(const SquaredDistance& p, const SquaredDistance& q) {
-  BigInteger here = p.over * q.under, there = q.over * p.under;
-  const int shift = p.exponent - q.exponent;
-  (shift > 0 ? here : there) <<= static_cast<unsigned>(std::abs(shift));
-  return here.compare(there) < 0 ? -1 : here == there ? 0 : 1;
-}
-
-SquaredDistance square_of(double distance) {
-  const OddMantissa value(distance);
-  return {BigInteger(value.mantissa) * value.mantissa, 1, 2 * value.exponent};
-}
-
-bool is_within_units(double distance, const SquaredDistance& squared, int units) {
-  if (!std::isfinite(distance)) return false;
-  double low = distance, high = distance;
-  for (int i = 0; i < units; ++i) {
-    low = std::max(0.0, std::nextafter(low, 0.0));
-    high = std::nextafter(high, infinity);
+Fraction squared_distance_by_integers(const Vec3d& point, const TrianglePoints& corners) {
+  int lowest = 0;
+  const auto points = integers_of(point, corners, lowest);
+  const auto& [p, a, b, c] = points;
+  const auto exact = [&](Integer over, Integer under) {
+    (lowest > 0 ? over : under) <<= 2 * std::abs(lowest);
+    return Fraction{std::move(over), std::move(under)};
+  };
+  const IntegerVector u = minus(b, a), v = minus(c, a), w = minus(p, a), n = cross(u, v);
+  if (const Integer whole = dot(n, n); whole != 0) {
+    const Integer s = dot(cross(w, v), n), t = dot(cross(u, w), n);
+    const Integer volume = dot(n, w);
+    if (s >= 0 && t >= 0 && s + t <= whole) return exact(volume * volume, whole);
   }
-  return compare(square_of(low), squared) <= 0 &&
-         (high == infinity || compare(square_of(high), squared) >= 0);
-}
-
-SquaredDistance squared_distance_by_integers(const Vec3d& point, const TrianglePoints& corners) {
-  const IntegerCorners exact(point, corners);
-  const auto& [p, a, b, c] = exact.points;
-  const int exponent = 2 * exact.lowest;
-  const IntegerVector u = difference(b, a), v = difference(c, a), w = difference(p, a), n = cross_of(u, v);
-  if (const BigInteger whole = dot_of(n, n); whole != 0) {
-    const BigInteger s = dot_of(cross_of(w, v), n), t = dot_of(cross_of(u, w), n);
-    if (s >= 0 && t >= 0 && s + t <= whole) {
-      const BigInteger volume = dot_of(n, w);
-      return {volume * volume, whole, exponent};
-    }
-  }
-  std::optional<SquaredDistance> best;
-  const auto keep = [&](const BigInteger& over, const BigInteger& under) {
-    SquaredDistance found{over, under, exponent};
-    if (!best || compare(found, *best) < 0) best = std::move(found);
+  Integer least = 0, least_under = 0;
+  const auto keep = [&](const Integer& over, const Integer& under) {
+    if (least_under == 0 || over * least_under < least * under)
+      std::tie(least, least_under) = std::tie(over, under);
   };
   for (std::size_t i = 1; i <= 3; ++i) {
-    const IntegerVector edge = difference(exact.points[i % 3 + 1], exact.points[i]),
-                        to_point = difference(p, exact.points[i]);
-    const BigInteger whole = dot_of(edge, edge), along = dot_of(to_point, edge),
-                     squared = dot_of(to_point, to_point);
+    const IntegerVector edge = minus(points[i % 3 + 1], points[i]), to_point = minus(p, points[i]);
+    const Integer whole = dot(edge, edge), along = dot(to_point, edge), squared = dot(to_point, to_point);
     keep(squared, 1);
     if (along > 0 && along < whole) keep(squared * whole - along * along, whole);
   }
-  return *best;
+  return exact(least, least_under);
 }
 
 PlainTree::PlainTree(const std::vector<BoxedCorners>& triangles) : items_(triangles.size()) {
@@ -308,7 +252,7 @@ PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point, std::size_t gues
   for (const auto& [lower, i] : candidates) {
     if (lower > least) continue;
     Nearest found{triangles[i].triangle, squared_distance_by_integers(point, triangles[i].corners), i};
-    const int side = best ? compare(found.squared, best->squared) : -1;
+    const int side = best ? found.squared.compare(best->squared) : -1;
     if (side < 0 || (side == 0 && found.triangle < best->triangle)) best = std::move(found);
   }
   return *best;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "contact/distance/distance_algebra.hpp"
 #include "supple/queries.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "verify/brute_force_contacts.hpp"
@@ -15,19 +15,15 @@
 // Shares no code with detection and queries.
 namespace supple {
 
-/// A squared distance, exactly: over / under · 2^exponent, with an even exponent.
-struct SquaredDistance {
-  boost::multiprecision::cpp_int over = 0, under = 1;
-  int exponent = 0;
+/// A number that is not reduced, because that takes longer than to compare a few of them.
+struct Fraction {
+  sturm::Integer over = 0, under = 1;
+
+  int compare(const Fraction& other) const { return (over * other.under).compare(other.over * under); }
+  Rational value() const { return Rational(over, under); }
 };
-/// The sign of the difference.
-int compare(const SquaredDistance& p, const SquaredDistance& q);
-/// The squared distance of a point and a triangle with finite coordinates.
-SquaredDistance squared_distance_by_integers(const Vec3d& point, const TrianglePoints& corners);
-/// The square of a double.
-SquaredDistance square_of(double distance);
-/// Whether a distance is within some units in the last place of the exact one.
-bool is_within_units(double distance, const SquaredDistance& squared, int units);
+/// The squared distance of a point and a triangle with finite coordinates, exactly.
+Fraction squared_distance_by_integers(const Vec3d& point, const TrianglePoints& corners);
 
 /// A triangle with finite corners, and its exact box.
 struct BoxedCorners {
@@ -88,7 +84,7 @@ struct PlainSurface {
 
   struct Nearest {
     std::uint32_t triangle = 0;  ///< the user's number; the smallest of several
-    SquaredDistance squared;
+    Fraction squared;
     std::size_t place = 0;  ///< in `triangles`
   };
   /// The nearest triangle of a finite point. There must be one. The search starts at the place `guess`.

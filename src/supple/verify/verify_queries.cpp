@@ -25,13 +25,6 @@ PlainObject object_of_queries(const WorldObject& object) {
   return plain;
 }
 
-/// As `is_accurate`, also for numbers that are negative or NaN, and for distances that no double holds.
-bool is_distance(double distance, const Rational& squared) {
-  constexpr double largest = std::numeric_limits<double>::max();
-  if (std::isinf(distance) && distance > 0) return squared > Rational(largest) * Rational(largest);
-  return distance >= 0 && is_accurate(distance, squared);
-}
-
 /// Calls `check(i)` for all i below `count`, on all threads. It returns both answers when they differ.
 template <class Check>
 std::vector<WrongAnswer> wrong_answers(const Parallel& parallel, std::size_t count, const Check& check) {
@@ -156,7 +149,7 @@ std::vector<WrongAnswer> QueryVerifier::closest(std::span<const Vec3d> points,
       }
       return found->object == plain.ids[truth->surface] && found->triangle == truth->triangle &&
              found->feature == truth->distance.on_b &&
-             is_distance(is_inside ? -found->distance : found->distance, truth->distance.squared);
+             is_accurate(is_inside ? -found->distance : found->distance, truth->distance.squared);
     };
     if (is_right()) return {};
     std::string of_found = "nothing", of_truth = "nothing";
@@ -191,7 +184,7 @@ std::vector<WrongAnswer> QueryVerifier::cast(std::span<const Ray> rays,
     const bool is_right = found && !truth.empty()
                               ? found->object == plain.ids[truth.front().surface] &&
                                     found->triangle == truth.front().triangle && found->hits == hits &&
-                                    is_distance(found->t, truth.front().t * truth.front().t)
+                                    is_accurate(found->t, truth.front().t * truth.front().t)
                               : !found && truth.empty();
     if (is_right) return {};
     std::string of_found = "nothing", of_truth = "nothing";
@@ -218,7 +211,7 @@ std::vector<WrongAnswer> QueryVerifier::cast_all(std::span<const Ray> rays,
         found.of(i), std::span(truth),
         [&](const ListedRayHit& f, const ExactHit& t) {
           return f.hit.object == plain.ids[t.surface] && f.hit.triangle == t.triangle &&
-                 f.hit.hits == truth.size() && is_distance(f.hit.t, t.t * t.t);
+                 f.hit.hits == truth.size() && is_accurate(f.hit.t, t.t * t.t);
         },
         [&](const ListedRayHit& f) { return describe(f.hit.object, f.hit.triangle, f.hit.t, f.hit.hits); },
         [&](const ExactHit& t) {
@@ -305,7 +298,7 @@ std::optional<WrongAnswer> QueryVerifier::wrong_distance(const ObjectPair& pair,
     const NearElements& near = truth->nearest;
     return found->kind_a == near.kind_a && found->kind_b == near.kind_b &&
            found->element_a == near.element_a && found->element_b == near.element_b &&
-           found->on_a == near.on_a && found->on_b == near.on_b && is_distance(found->distance, near.squared);
+           found->on_a == near.on_a && found->on_b == near.on_b && is_accurate(found->distance, near.squared);
   };
   const auto is_right = [&] {
     if (found == nullptr || !truth) return found == nullptr && !truth;

@@ -25,10 +25,10 @@ constexpr SceneOptions penetration{.contacts = ContactKinds::penetration, .curve
 RationalVector rational(const Vec3d& v) {
   return {Rational(v.x), Rational(v.y), Rational(v.z)};
 }
-Rational dot_of(const RationalVector& a, const RationalVector& b) {
+Rational dot(const RationalVector& a, const RationalVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-RationalVector cross_of(const RationalVector& a, const RationalVector& b) {
+RationalVector cross(const RationalVector& a, const RationalVector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
@@ -46,8 +46,8 @@ struct Box {
   /// The largest and the smallest value of a linear function.
   std::pair<Rational, Rational> range(const RationalVector& m) const {
     Rational radius = 0;
-    for (const Vec3d& h : half) radius += abs(dot_of(m, rational(h)));
-    const Rational middle = dot_of(m, rational(center));
+    for (const Vec3d& h : half) radius += abs(dot(m, rational(h)));
+    const Rational middle = dot(m, rational(center));
     return {middle - radius, middle + radius};
   }
 };
@@ -57,14 +57,13 @@ struct Box {
 Rational separating_move(const Box& a, const Box& b, const Vec3d& n) {
   std::vector<RationalVector> directions;
   for (std::size_t i = 0; i < 3; ++i) {
-    directions.push_back(cross_of(rational(a.half[i]), rational(a.half[(i + 1) % 3])));
-    directions.push_back(cross_of(rational(b.half[i]), rational(b.half[(i + 1) % 3])));
-    for (std::size_t k = 0; k < 3; ++k)
-      directions.push_back(cross_of(rational(a.half[i]), rational(b.half[k])));
+    directions.push_back(cross(rational(a.half[i]), rational(a.half[(i + 1) % 3])));
+    directions.push_back(cross(rational(b.half[i]), rational(b.half[(i + 1) % 3])));
+    for (std::size_t k = 0; k < 3; ++k) directions.push_back(cross(rational(a.half[i]), rational(b.half[k])));
   }
   std::optional<Rational> least;
   for (RationalVector m : directions) {
-    Rational along = dot_of(m, rational(n));
+    Rational along = dot(m, rational(n));
     if (along == 0) continue;
     if (along < 0) {
       for (Rational& x : m) x = -x;
@@ -367,7 +366,7 @@ TEST(CurveDepth, OfManyPinsInASheetIsNearlyThatOfEachAlone) {
     // Alone, the part of the sheet around the pin counts, too.
     EXPECT_LE(curve.depth, same->depth * (1 + 1e-9));
     EXPECT_GE(curve.depth, same->depth * 0.99);
-    EXPECT_NEAR(dot_of(rational(curve.normal), rational(same->normal)).convert_to<double>(), 1, 1e-9);
+    EXPECT_NEAR(dot(rational(curve.normal), rational(same->normal)).convert_to<double>(), 1, 1e-9);
   }
 }
 

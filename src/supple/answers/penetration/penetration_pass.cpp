@@ -278,7 +278,7 @@ void PenetrationPass::move_ranges(std::size_t i, const Outcomes::Ranges& from) {
 }
 
 bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parallel) {
-  constexpr std::size_t grain = ClosestPoints::capacity;
+  constexpr std::size_t grain = DistanceBatch::capacity;
   parallel.for_ranges(new_penetrations_.size(), grain,
                       [&](std::size_t begin, std::size_t end, std::uint32_t w) {
                         for (; begin < end && !stop.stop_requested(); begin += grain)
@@ -287,25 +287,29 @@ bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parall
   return !stop.stop_requested();
 }
 
-/// Takes at most `ClosestPoints::capacity` new penetrations.
+/// Takes at most `DistanceBatch::capacity` new penetrations.
 void PenetrationPass::find_depths(std::size_t begin, std::size_t end, Worker& worker) {
-  std::array<FoundTriangle, ClosestPoints::capacity> found;
-  std::array<ElementDistance, ClosestPoints::capacity> distances;
+  std::array<FoundFeatures, DistanceBatch::capacity> found;
+  std::array<ElementDistance, DistanceBatch::capacity> distances;
   ObjectId last_outer;
   for (std::size_t i = begin; i < end; ++i) {
-    const Penetration& penetration = penetrations_[new_penetrations_[i]];
+    Penetration& penetration = penetrations_[new_penetrations_[i]];
     const PenetratedObject& outer = objects_[penetration.object_b.index];
-    if (i == begin || penetration.object_b != last_outer) worker.depth_search.start();
+    if (i == begin || penetration.object_b != last_outer) worker.queries.start();
     last_outer = penetration.object_b;
     // There is one, because the vertex is inside.
     const SurfaceView& inner = objects_[penetration.object_a.index].surface;
-    found[i - begin] = *worker.depth_search.find(outer.queried, inner.position(penetration.vertex));
+    const FoundTriangle nearest =
+        *worker.queries.nearest(std::span(&outer.queried, 1), inner.position(penetration.vertex),
+                                std::numeric_limits<double>::infinity());
+    penetration.triangle = nearest.id;
+    found[i - begin] = {nearest.elements(), nearest.features};
   }
-  worker.closest_points.compute(std::span(found).first(end - begin), distances);
+  std::uint64_t exact_count = 0;
+  worker.distances.compute(std::span(found).first(end - begin), distances, exact_count);
   for (std::size_t i = begin; i < end; ++i) {
     Penetration& penetration = penetrations_[new_penetrations_[i]];
     const ElementDistance& distance = distances[i - begin];
-    penetration.triangle = found[i - begin].id;
     penetration.feature = distance.on_b;
     penetration.depth = distance.distance;
     penetration.barycentric = distance.barycentric_b;

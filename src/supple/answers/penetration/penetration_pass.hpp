@@ -7,8 +7,8 @@
 
 #include "answers/pass.hpp"
 #include "answers/penetration/curve_finder.hpp"
-#include "answers/penetration/depth_search.hpp"
 #include "answers/penetration/surface_view.hpp"
+#include "contact/distance/distance_batch.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "queries/object_queries.hpp"
@@ -85,8 +85,7 @@ class PenetrationPass {
   struct Worker {
     CurveFinder curve_finder;
     ObjectQueries queries;
-    DepthSearch depth_search;
-    ClosestPoints closest_points;
+    DistanceBatch distances;
     CurveLists curves;
     std::vector<std::uint32_t> inside, on_surface;
     std::vector<ContainedPart> parts;

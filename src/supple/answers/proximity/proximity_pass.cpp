@@ -61,19 +61,6 @@ ClosestFeatures renumbered(ClosestFeatures features, const std::array<std::uint8
   return features;
 }
 
-FeaturePair feature_pair_of(const ClosestFeatures& features, bool are_edges) {
-  using Kind = ClosestFeatures::Kind;
-  if (features.kind == Kind::vertices) return FeaturePair::vertices;
-  if (features.kind == Kind::vertex_edge) return FeaturePair::vertex_edge;
-  return are_edges ? FeaturePair::edges : FeaturePair::vertex_face;
-}
-
-/// The indices of the points that `compute_distance_numbers` needs.
-std::array<std::uint8_t, 4> points_of_features(const ClosestFeatures& features) {
-  if (features.kind == ClosestFeatures::Kind::interiors) return {0, 1, 2, 3};
-  return {features.vertex, features.edge[0], features.edge[1], 0};
-}
-
 }  // namespace
 
 void ProximityWorker::start() {
@@ -337,46 +324,29 @@ void ProximityPass::compute_found(const Parallel& parallel) {
 void ProximityPass::compute_pairs(std::uint32_t job, std::span<const FoundPair> found, Worker& worker,
                                   ProximityPair* pairs) {
   const ObjectPair objects{objects_[jobs_[job].a].id, objects_[jobs_[job].b].id};
+  std::array<std::size_t, block_size> places;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i].crosses()) continue;
-    const auto [edge, face] = with_points(crossing_of(job, found[i].kind, found[i].candidate));
-    bool used_exact = false;
-    pairs[i] = crossing_pair_of(edge, face, objects, order_of(job, found[i].kind), used_exact);
-    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
-  }
-  std::array<std::size_t, block_size> members;
-  for (const FeaturePair kind :
-       {FeaturePair::vertices, FeaturePair::vertex_edge, FeaturePair::vertex_face, FeaturePair::edges}) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const FoundPair& pair = found[i];
-      if (pair.crosses() || feature_pair_of(pair.features, pair.kind == CandidateKind::edge_edge) != kind)
-        continue;
-      const auto element_kind = static_cast<ElementPairKind>(pair.kind);
-      worker.elements[count] = with_points(job, element_kind, elements_of(job, element_kind, pair.candidate));
-      const auto& [first, second] = worker.elements[count];
-      const auto points = points_of_features(pair.features);
-      for (std::size_t k = 0; k < 4; ++k) {
-        const std::size_t point = points[k];
-        worker.block.set(k, count,
-                         point < first.count ? first.points[point] : second.points[point - first.count]);
-      }
-      members[count++] = i;
-    }
-    if (count == 0) continue;
-    compute_distance_numbers(worker.block, count, kind, worker.numbers);
-    for (std::size_t m = 0; m < count; ++m) {
-      const FoundPair& pair = found[members[m]];
-      const auto& [first, second] = worker.elements[m];
-      const ElementPoints points = points_of(first, second);
+    const FoundPair& pair = found[i];
+    if (pair.crosses()) {
+      const auto [edge, face] = with_points(crossing_of(job, pair.kind, pair.candidate));
       bool used_exact = false;
-      const ElementDistance distance = worker.numbers.is_valid[m] != 0
-                                           ? distance_of(points, pair.features, worker.numbers.at(m))
-                                           : distance_of(points, pair.features, used_exact);
+      pairs[i] = crossing_pair_of(edge, face, objects, order_of(job, pair.kind), used_exact);
       worker.stats.exact_fallbacks += used_exact ? 1 : 0;
-      pairs[members[m]] =
-          proximity_pair_of(first, second, distance, objects, order_of(job, pair.kind), search_.listing);
+      continue;
     }
+    const auto kind = static_cast<ElementPairKind>(pair.kind);
+    worker.elements[count] = with_points(job, kind, elements_of(job, kind, pair.candidate));
+    const auto& [first, second] = worker.elements[count];
+    worker.features[count] = {points_of(first, second), pair.features};
+    places[count++] = i;
+  }
+  worker.batch.compute(std::span(worker.features).first(count), worker.distances,
+                       worker.stats.exact_fallbacks);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& [first, second] = worker.elements[k];
+    pairs[places[k]] = proximity_pair_of(first, second, worker.distances[k], objects,
+                                         order_of(job, found[places[k]].kind), search_.listing);
   }
 }
 

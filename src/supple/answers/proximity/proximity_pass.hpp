@@ -11,7 +11,7 @@
 #include "answers/element_candidates.hpp"
 #include "answers/pass.hpp"
 #include "answers/search_options.hpp"
-#include "contact/distance/distance_kernels.hpp"
+#include "contact/distance/distance_batch.hpp"
 #include "contact/distance/recent_elements.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
@@ -54,8 +54,11 @@ struct ProximityWorker : PassWorker<FoundPair> {
   };
 
   PointsBlock block;
-  DistanceNumbersBlock numbers;
-  std::array<std::array<PairElement, 2>, PointsBlock::capacity> elements;
+  // Pairs whose numbers are computed together.
+  std::array<std::array<PairElement, 2>, DistanceBatch::capacity> elements;
+  std::array<FoundFeatures, DistanceBatch::capacity> features;
+  std::array<ElementDistance, DistanceBatch::capacity> distances;
+  DistanceBatch batch;
   std::vector<Run> runs;        // of finished tasks, or of what was merged
   std::uint32_t run_first = 0;  // where the present task began to add candidates after those
   std::size_t merge_at = 0;     // size of `found`

@@ -9,6 +9,10 @@ template <class Number>
 using NumberVector = std::array<Number, 3>;
 
 template <class Number>
+NumberVector<Number> minus(const NumberVector<Number>& a, const NumberVector<Number>& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <class Number>
 Number dot(const NumberVector<Number>& a, const NumberVector<Number>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "geometry/numbers/number_vector.hpp"
 #include "geometry/numbers/sturm.hpp"
 #include "geometry/vector.hpp"
 #include "supple/continuous.hpp"
@@ -31,17 +32,7 @@ using sturm::lowest_bit;
 using sturm::Polynomial;
 using sturm::Root;
 using sturm::to_integer;
-using Path = std::array<Polynomial, 3>;
-
-Path difference(const Path& p, const Path& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-Polynomial dot(const Path& p, const Path& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-Path cross(const Path& p, const Path& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
+using Path = NumberVector<Polynomial>;
 
 /// A part of K and the conditions under which it has a point within the separation.
 struct Part {
@@ -67,16 +58,16 @@ class Elements {
     }
     const Integer d = to_integer(separation, lowest);
     squared_separation_ = Polynomial{d * d} + Polynomial{};
-    const Path x = difference(vertices[0], vertices[edges ? 2 : 1]);
-    const Path u = difference(edges ? vertices[0] : vertices[2], vertices[1]);
-    const Path w = difference(vertices[3], vertices[edges ? 2 : 1]);
-    const Path u_to_w = difference(w, u);
-    const Path to_u = difference(x, u), to_w = difference(x, w);
+    const Path x = minus(vertices[0], vertices[edges ? 2 : 1]);
+    const Path u = minus(edges ? vertices[0] : vertices[2], vertices[1]);
+    const Path w = minus(vertices[3], vertices[edges ? 2 : 1]);
+    const Path u_to_w = minus(w, u);
+    const Path to_u = minus(x, u), to_w = minus(x, w);
     for (const Path* corner : {&x, &to_u, &to_w}) add_corner(*corner);
     add_side(x, u);
     add_side(x, w);
     if (edges) {
-      add_corner(difference(to_u, w));
+      add_corner(minus(to_u, w));
       add_side(to_u, w);
       add_side(to_w, u);
     } else {

@@ -9,6 +9,9 @@
 #include <vector>
 
 namespace supple {
+
+using sturm::Integer;
+
 namespace {
 
 /// A part of an element: its vertices by index, and its place in the order of ties.
@@ -41,14 +44,14 @@ bool closest_inside(const std::vector<RationalVector>& a, const std::vector<Rati
   const RationalVector w = minus(a[0], b[0]);
   std::vector<Rational> x(sides.size());
   if (sides.size() == 1) {
-    const Rational length = dot_of(sides[0], sides[0]);
+    const Rational length = dot(sides[0], sides[0]);
     if (length == 0) return false;
-    x[0] = -dot_of(w, sides[0]) / length;
+    x[0] = -dot(w, sides[0]) / length;
   } else if (sides.size() == 2) {
-    const Rational g00 = dot_of(sides[0], sides[0]), g01 = dot_of(sides[0], sides[1]),
-                   g11 = dot_of(sides[1], sides[1]), determinant = g00 * g11 - g01 * g01;
+    const Rational g00 = dot(sides[0], sides[0]), g01 = dot(sides[0], sides[1]),
+                   g11 = dot(sides[1], sides[1]), determinant = g00 * g11 - g01 * g01;
     if (determinant == 0) return false;
-    const Rational r0 = -dot_of(w, sides[0]), r1 = -dot_of(w, sides[1]);
+    const Rational r0 = -dot(w, sides[0]), r1 = -dot(w, sides[1]);
     x[0] = (r0 * g11 - r1 * g01) / determinant;
     x[1] = (g00 * r1 - g01 * r0) / determinant;
   }
@@ -68,7 +71,7 @@ bool closest_inside(const std::vector<RationalVector>& a, const std::vector<Rati
   };
   const bool inside_a = set_weights(a.size(), truth.weights_a),
              inside_b = set_weights(b.size(), truth.weights_b);
-  truth.squared = dot_of(difference, difference);
+  truth.squared = dot(difference, difference);
   return inside_a && inside_b;
 }
 
@@ -114,7 +117,7 @@ bool cross_by_algebra(const std::array<Vec3d, 2>& edge, const std::array<Vec3d, 
                        u = minus(exact(face[1]), corner), v = minus(exact(face[2]), corner),
                        w = minus(corner, start);
   const auto determinant = [](const RationalVector& x, const RationalVector& y, const RationalVector& z) {
-    return dot_of(x, cross_of(y, z));
+    return dot(x, cross(y, z));
   };
   const Rational whole = determinant(along, u, v);
   if (whole == 0) return false;
@@ -123,13 +126,25 @@ bool cross_by_algebra(const std::array<Vec3d, 2>& edge, const std::array<Vec3d, 
   return t > 0 && t < 1 && p > 0 && q > 0 && p + q < 1;
 }
 
-bool is_accurate(double distance, const Rational& squared) {
+Rational squared(double value) {
+  return Rational(value) * Rational(value);
+}
+
+bool is_accurate(double distance, const Integer& over, const Integer& under) {
+  // The sign of the difference of a square and the exact one.
+  const auto compare_square = [&](double value) {
+    const int lowest = std::min(sturm::lowest_bit(value), 0);
+    const Integer root = sturm::to_integer(value, lowest);
+    return Integer(root * root * under).compare(Integer(over << -2 * lowest));
+  };
+  if (std::isinf(distance) && distance > 0) return compare_square(std::numeric_limits<double>::max()) < 0;
+  if (!(distance >= 0)) return false;
   double low = distance, high = distance;
   for (int i = 0; i < 4; ++i) {
     low = std::max(0.0, std::nextafter(low, 0.0));
     high = std::nextafter(high, std::numeric_limits<double>::infinity());
   }
-  return Rational(low) * Rational(low) <= squared && squared <= Rational(high) * Rational(high);
+  return compare_square(low) <= 0 && (std::isinf(high) || compare_square(high) >= 0);
 }
 
 /// The root of an integer, which is the number times a power of 4.

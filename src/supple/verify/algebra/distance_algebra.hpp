@@ -4,6 +4,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <span>
 
+#include "geometry/numbers/number_vector.hpp"
+#include "geometry/numbers/sturm.hpp"
 #include "supple/contact.hpp"
 #include "supple/types.hpp"
 
@@ -12,19 +14,10 @@ namespace supple {
 using Rational =
     boost::multiprecision::number<boost::multiprecision::cpp_rational_backend, boost::multiprecision::et_off>;
 
-using RationalVector = std::array<Rational, 3>;
+using RationalVector = NumberVector<Rational>;
 
 inline RationalVector exact(const Vec3d& v) {
   return {Rational(v.x), Rational(v.y), Rational(v.z)};
-}
-inline RationalVector minus(const RationalVector& a, const RationalVector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Rational dot_of(const RationalVector& a, const RationalVector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline RationalVector cross_of(const RationalVector& a, const RationalVector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 /// The closest points of two elements, exactly.
@@ -44,8 +37,14 @@ ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3
 /// of the equations in rationals.
 bool cross_by_algebra(const std::array<Vec3d, 2>& edge, const std::array<Vec3d, 3>& face);
 
-/// Whether the distance is within 4 units in the last place of the exact one.
-bool is_accurate(double distance, const Rational& squared);
+/// The square of a finite number.
+Rational squared(double value);
+/// Whether the distance is within 4 units in the last place of the root of a fraction, or infinite where no
+/// double holds that. False for numbers that are negative or NaN.
+bool is_accurate(double distance, const sturm::Integer& over, const sturm::Integer& under);
+inline bool is_accurate(double distance, const Rational& squared) {
+  return is_accurate(distance, numerator(squared), denominator(squared));
+}
 /// The root to at least 60 bits, rounded to double.
 double rounded_root(const Rational& squared);
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <limits>
 
+#include "geometry/numbers/number_vector.hpp"
 #include "geometry/numbers/sturm.hpp"
 #include "geometry/vector.hpp"
 #include "supple/triangle_intersection.hpp"
@@ -27,18 +28,8 @@ namespace supple {
 namespace {
 
 using sturm::Integer;
-using Vector = std::array<Integer, 3>;
+using Vector = NumberVector<Integer>;
 using Corners = std::array<Vector, 3>;
-
-Vector minus(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Integer dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 class AxisSearch {
  public:
