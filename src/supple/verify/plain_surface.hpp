@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/distance/distance_algebra.hpp"
 #include "supple/queries.hpp"
 #include "supple/triangle_intersection.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 #include "verify/brute_force_contacts.hpp"
 
 // The surface of one object, for `verify`. Intervals of doubles decide what they can, and integers the rest.
