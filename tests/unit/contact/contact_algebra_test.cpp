@@ -19,7 +19,7 @@ static void PrintTo(const TimeBracket& bracket, std::ostream* stream) {
   *stream << std::hexfloat << '[' << bracket.low << ", " << bracket.high << ']';
 }
 
-namespace {
+namespace contact_algebra_test {
 
 using truth::Rational;
 
@@ -434,5 +434,5 @@ TEST(ContactAlgebra, NeedsNoMoreThanTheCoordinatesAreWide) {
   EXPECT_GT(contacts, 20);
 }
 
-}  // namespace
+}  // namespace contact_algebra_test
 }  // namespace supple
