@@ -90,7 +90,8 @@ std::string markdown(std::string text) {
 /// Whether docs/options.md lists the option: it has the key of an option of a scene or an object.
 bool is_listed_elsewhere(const CLI::Option* option) {
   static const std::vector<std::string> keys = keys_of_tables();
-  std::string key = replaced(option->get_name(false, true), "-", "_").substr(2);
+  std::string key = option->get_name(false, true).substr(2);
+  std::ranges::replace(key, '-', '_');
   if (key.starts_with("no_")) key.erase(0, 3);
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
