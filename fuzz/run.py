@@ -2,7 +2,8 @@
 """Runs the fuzz targets of a build, each for some seconds on its corpus, and prints how many inputs they ran.
 
 The preset fuzz uses libFuzzer; every other build runs random inputs and changed inputs of the corpora at its own
-speed. With --rounds, a machine of any speed runs the same inputs. Exits with 1 when a target fails; the input that made it fail is then in build/fuzz/failures.
+speed. With --rounds, a machine of any speed runs the same inputs. Exits with 1 when a target fails; the input that
+made it fail is then in build/fuzz/failures.
 """
 import argparse
 import csv

@@ -22,7 +22,7 @@ struct ArityOptions {
 
 ArityOptions arity_options(bool quick);
 
-/// Of the leaves; 0 without leaves.
+/// The mean level of the leaves; 0 for an octree without leaves.
 double mean_depth(const OctreeStatistics& octree);
 
 /// Trees of two, four and eight children, of objects and of the scene.

@@ -15,7 +15,7 @@
 
 namespace supple::viewer {
 
-/// Of an object, a vertex or a triangle.
+/// The largest id that an object, a vertex or a triangle can have.
 constexpr std::int64_t largest_id = std::numeric_limits<std::uint32_t>::max();
 
 /// Reads the members of a command. Keeps the first error as a message for the user; values returned after an
