@@ -21,6 +21,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
+#include "supple/verify.hpp"
 
 namespace supple {
 namespace {
@@ -157,7 +158,7 @@ std::function<std::size_t()> verify_of(const std::vector<TriangleMesh>& meshes, 
   auto world = std::make_shared<World>(World{Scene({.contacts = kinds, .threads = 1}), {}});
   for (const TriangleMesh& mesh : meshes) world->ids.push_back(world->scene.add(mesh, {.solid = true}));
   world->scene.detect();
-  return [world] { return static_cast<std::size_t>(world->scene.verify().inside_vertices); };
+  return [world] { return static_cast<std::size_t>(verify(world->scene).inside_vertices); };
 }
 
 std::vector<Case> all_cases() {

@@ -79,11 +79,17 @@ cmake_path(SET supple_core_header NORMALIZE ${CMAKE_CURRENT_LIST_DIR}/../include
 # The headers that most sources include compile once instead of once for each source. A compiler cache does not
 # store the results of such compilations, so builds with a cache do without. Up to twelve sources of a folder
 # compile together. Highway's sources compile alone, because each includes itself once for each instruction set.
+#
+#   supple_compile_together(TARGET HEADER...)                with its own precompiled headers
+#   supple_compile_together(TARGET REUSE_FROM OTHER_TARGET)  with those of a target with the same options
 function(supple_compile_together target)
   if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
     return()
   endif()
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  cmake_parse_arguments(PARSE_ARGV 1 given "" REUSE_FROM "")
+  if(given_REUSE_FROM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    target_precompile_headers(${target} REUSE_FROM ${given_REUSE_FROM})
+  elseif(NOT CMAKE_CXX_COMPILER_LAUNCHER)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <atomic> <bit> <cmath> <cstdint> <filesystem>
       <functional> <limits> <map> <memory> <optional> <set> <span> <sstream> <string> <tuple> <utility> <variant>
       <vector> ${supple_core_header} ${ARGN})

@@ -8,7 +8,7 @@ install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${package_dir})
 
 # Each component has its own targets file, which find_package reads only on request. So a program that links
 # only the core needs none of Assimp, libzip, pugixml and HDF5.
-foreach(component IN ITEMS models simulation formats recording distributed viewer)
+foreach(component IN ITEMS files verify inspect models simulation formats recording distributed viewer)
   if(TARGET supple_${component})
     set(targets supple_${component})
     if(component STREQUAL "viewer")
@@ -16,7 +16,8 @@ foreach(component IN ITEMS models simulation formats recording distributed viewe
     endif()
     install(TARGETS ${targets} EXPORT supple_${component}_targets
       ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${component}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    get_target_property(folder supple_${component} SOURCE_DIR)
+    install(DIRECTORY ${folder}/include/supple DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
     install(EXPORT supple_${component}_targets NAMESPACE supple:: DESTINATION ${package_dir})
   endif()
 endforeach()

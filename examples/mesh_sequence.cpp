@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "supple/mesh_file.hpp"
 #include "supple/models.hpp"
 #include "supple/simulation.hpp"
 #include "supple/supple.hpp"

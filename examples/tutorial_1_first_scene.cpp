@@ -3,6 +3,7 @@
 
 #include "supple/models.hpp"
 #include "supple/supple.hpp"
+#include "supple/verify.hpp"
 
 int main() {
   supple::Scene scene;
@@ -20,5 +21,5 @@ int main() {
     std::printf("  triangles %u and %u share (%.3f, %.3f, %.3f)\n", first.triangle_a, first.triangle_b,
                 point.position.x, point.position.y, point.position.z);
   }
-  std::printf("%s\n", scene.verify().agrees() ? "brute force agrees" : "brute force disagrees");
+  std::printf("%s\n", verify(scene).agrees() ? "brute force agrees" : "brute force disagrees");
 }

@@ -30,6 +30,7 @@
 #include "supple/inspection.hpp"
 #include "supple/recording.hpp"
 #include "supple/simulation.hpp"
+#include "supple/verify.hpp"
 #include "support/check.hpp"
 #include "support/event_ledger.hpp"
 
@@ -129,7 +130,7 @@ class Soak {
     const Scene& scene = simulation_.scene();
     const std::string error = SceneInspector(scene).validate();
     check(error.empty(), error);
-    check(scene.verify().agrees(), "the result differs from that of brute force");
+    check(verify(scene).agrees(), "the result differs from that of brute force");
     ++checked_;
   }
 

@@ -29,7 +29,6 @@ FILLED_IN = ("Options::", "Request::", "Limits::", "Response::")
 # Names or headers of the core that no document needs to mention, each with the reason.
 UNMENTIONED = {
     "supple/description.hpp": "serves the programs of this repository; CONTRIBUTING.md says what is made from it",
-    "supple/difference_descriptions.hpp": "as description.hpp",
     "supple/record_descriptions.hpp": "as description.hpp",
     "supple/result_lists.hpp": "as description.hpp",
     "supple/utf8.hpp": "makes the text of messages, which users only read",

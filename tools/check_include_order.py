@@ -4,8 +4,9 @@
 usage: check_include_order.py [ROOT]
 
 A folder of src/supple includes only from itself and from the folders before it in LAYERS. An include of an
-internal header contains its folder ("core/parallel.hpp"). COMPONENTS has the limits of the libraries around
-the core. Public headers include only public headers and the standard library. The programs around the library
+internal header contains its folder ("core/parallel.hpp"). LIBS are the libraries in libs/: each includes
+headers of the core and of the libraries that it names. COMPONENTS has the limits of the libraries around
+them. Public headers include only public headers and the standard library. The programs around the library
 include only public headers, files of their own folder and of the one in BUILT_ON, and files of the viewer
 folders in SHARED. Only core/ starts threads, so only core/ may include oneTBB. A chain of includes within a
 layer, a component or a program has at most LONGEST_CHAIN files, and a folder at most MOST_FILES files of its
@@ -19,7 +20,7 @@ import sys
 
 LAYERS = [
     "core", "geometry", "mesh", "contact", "octree", "broad_phase", "narrow_phase", "world", "queries", "answers",
-    "verify", "inspect", "scene",
+    "scene",
 ]
 LONGEST_CHAIN = 5
 # An octree has volumes of its nodes, which are fitted; a search has a pass for each kind, which has parts; a
@@ -27,8 +28,12 @@ LONGEST_CHAIN = 5
 # that read arguments as settings of a stage; cells of the contest take turns of contestants, whose tasks are workloads.
 LONGER_CHAINS = {"octree": 6, "answers": 6, "simulation/src": 7, "viewer/session": 7, "benchmarks": 7}
 MOST_FILES = 20
-# Libraries around the core, each with the last layer whose internal headers it may include; recording: none.
+# Libraries in libs/, each with those whose internal headers it may include. They include all layers.
+LIBS = {"files": [], "verify": [], "inspect": []}
+# Libraries around these, each with the last layer whose internal headers it may include; recording: none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None, "distributed": "scene"}
+# Components that include internal headers of libraries in libs/.
+LIBS_OF_COMPONENTS = {"formats": ["files"], "distributed": ["verify"]}
 PROGRAMS = ["viewer/session", "viewer/export", "viewer/view_file", "viewer/server", "viewer/attach", "cli", "experiments", "examples", "benchmarks"]
 # Folders of small programs that do not depend on each other.
 LISTS = ["examples"]
@@ -36,7 +41,7 @@ LISTS = ["examples"]
 SHARED = {"viewer/server": ["session"], "viewer/view_file": ["session", "export"], "viewer/attach": ["session", "export", "view_file", "server"], "cli": ["session", "export", "view_file", "server"], "experiments": ["session"]}
 # Programs that are built on the parts of another one; a benchmark divides space as a distributed scene does.
 BUILT_ON = {"experiments": "cli", "benchmarks": "distributed/src"}
-PUBLIC = ["include", "viewer/include"] + [f"{name}/include" for name in COMPONENTS]
+PUBLIC = ["include", "viewer/include"] + [f"libs/{name}/include" for name in LIBS] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -53,14 +58,14 @@ def sources(folder):
     return sorted(p for p in folder.rglob("*") if p.suffix in SOURCES)
 
 
-def is_public(root, name):
-    return name.startswith("supple/") and any((root / folder / name).is_file() for folder in PUBLIC)
+def is_public(root, name, folders=PUBLIC):
+    return name.startswith("supple/") and any((root / folder / name).is_file() for folder in folders)
 
 
-def problem_in_library(root, layer, bracket, name):
+def problem_in_library(root, layer, bracket, name, folders=PUBLIC):
     if name.startswith("tbb/") and layer != "core":
         return "only core/ includes oneTBB; use core/parallel.hpp"
-    if bracket == "<" or is_public(root, name):
+    if bracket == "<" or is_public(root, name, folders):
         return None
     target = name.split("/")[0]
     if target not in LAYERS or "/" not in name:
@@ -72,7 +77,9 @@ def problem_in_library(root, layer, bracket, name):
     return None
 
 
-def problem_in_component(root, layer, bracket, name):
+def problem_in_component(root, layer, libs, bracket, name):
+    if name.split("/")[0] in libs and (root / "libs" / name).is_file():
+        return None
     if layer is not None:
         return problem_in_library(root, layer, bracket, name)
     if bracket == "<" or is_public(root, name):
@@ -80,10 +87,11 @@ def problem_in_component(root, layer, bracket, name):
     return "include only public headers (supple/...) and files of the same folder"
 
 
-def problem_in_public_header(root, bracket, name):
+def problem_in_public_header(root, folder, bracket, name):
     if bracket == "<":
         return "a public header needs no third party; move this into src/" if "/" in name else None
-    return None if is_public(root, name) else "a public header includes only public headers (supple/...)"
+    folders = ["include"] if folder == "include" else PUBLIC
+    return None if is_public(root, name, folders) else "a public header includes only public headers (supple/...), one of the core only those of the core"
 
 
 def problem_in_program(root, folder, path, bracket, name):
@@ -109,6 +117,11 @@ def longest_chain(base, folder, chain):
     return max((longest_chain(base, folder, chain + [path]) for path in own), key=len, default=chain)
 
 
+def in_lib(root, name):
+    folder = root / "libs" / name
+    return [path for path in sources(folder) if not path.is_relative_to(folder / "include")]
+
+
 def problems(root):
     """Yields (path, line number, include, what is wrong)."""
     library = root / "src/supple"
@@ -118,17 +131,18 @@ def problems(root):
             yield path, 1, layer, f"not in a layer; move it into one of {', '.join(LAYERS)}"
             continue
         for number, bracket, name in includes(path):
-            if what := problem_in_library(root, layer, bracket, name):
+            if what := problem_in_library(root, layer, bracket, name, ["include"]):
                 yield path, number, name, what
     own_folders = [f"{name}/src" for name in COMPONENTS] + [name for name in PROGRAMS if name not in LISTS]
-    for name, base in [(layer, library) for layer in LAYERS] + [(name, root / name) for name in own_folders]:
-        most, folder = LONGER_CHAINS.get(name, LONGEST_CHAIN), library / name if base == library else base
+    in_bases = [(layer, library) for layer in LAYERS] + [(lib, root / "libs") for lib in LIBS]
+    for name, base in in_bases + [(name, root / name) for name in own_folders]:
+        most, folder = LONGER_CHAINS.get(name, LONGEST_CHAIN), base if base.name == pathlib.Path(name).name else base / name
         for path in sources(folder):
             chain = longest_chain(base, folder, [path])
             if len(chain) > most:
                 names = " includes ".join(p.relative_to(base).as_posix() for p in chain)
                 yield path, 1, names, f"a chain of more than {most} files"
-    in_rooms = [path for folder in [library] + [root / name for name in own_folders] for path in sources(folder)]
+    in_rooms = [path for folder in [library, root / "libs"] + [root / name for name in own_folders] for path in sources(folder)]
     for folder, count in sorted(collections.Counter(path.parent for path in in_rooms).items()):
         if count > MOST_FILES:
             yield folder, 1, folder.name, f"a folder of {count} files; give it rooms of at most {MOST_FILES}"
@@ -138,12 +152,17 @@ def problems(root):
             for number, bracket, name in includes(path):
                 if bracket == '"' and (own / name).is_file():
                     continue
-                if what := problem_in_component(root, layer, bracket, name):
+                if what := problem_in_component(root, layer, LIBS_OF_COMPONENTS.get(component, []), bracket, name):
                     yield path, number, name, what
+    for name, used in LIBS.items():
+        for path in in_lib(root, name):
+            for number, bracket, included in includes(path):
+                if what := problem_in_component(root, LAYERS[-1], [name, *used], bracket, included):
+                    yield path, number, included, what
     for folder in PUBLIC:
         for path in sources(root / folder):
             for number, bracket, name in includes(path):
-                if what := problem_in_public_header(root, bracket, name):
+                if what := problem_in_public_header(root, folder, bracket, name):
                     yield path, number, name, what
     for program in PROGRAMS:
         folder = root / program

@@ -17,7 +17,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "coverage"
 PAGE = ROOT / "fuzz" / "coverage.md"
-SOURCES = ["src", "simulation", "recording", "formats", "viewer/session", "viewer/export", "viewer/server", "cli",
+SOURCES = ["src", "libs", "simulation", "recording", "formats", "viewer/session", "viewer/export", "viewer/server", "cli",
            "experiments"]
 # Tests that kill the program or limit its files and memory, which the counters would not survive, and long ones.
 LEFT_OUT = "^(faults|install)|OutOfMemory|cli.recording|cli.usage|viewer_e2e|cli.experiment|cli.paper"

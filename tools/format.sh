@@ -5,5 +5,5 @@ cd "$(dirname "$0")/.."
 
 mode=(-i)
 [ "${1:-}" = "--check" ] && mode=(--dry-run --Werror)
-find include src models simulation distributed bindings cli experiments formats recording viewer examples benchmarks tests fuzz -name node_modules -prune -o -name '*.?pp' -print0 2>/dev/null |
+find include src libs models simulation distributed bindings cli experiments formats recording viewer examples benchmarks tests fuzz -name node_modules -prune -o -name '*.?pp' -print0 2>/dev/null |
   xargs -0 "${CLANG_FORMAT:-clang-format-14}" "${mode[@]}"

@@ -42,7 +42,8 @@ COMPARISON = re.compile(r"operator(==|!=|<=>|<|>|<=|>=)$")
 def api_headers(root):
     """The (library, path) of each public header: those of the core, then those of the other libraries."""
     core = [("core", path) for path in sorted(root.glob("include/supple/*.hpp"))]
-    return core + [(path.relative_to(root).parts[0], path) for path in sorted(root.glob("*/include/supple/*.hpp"))]
+    others = sorted([*root.glob("libs/*/include/supple/*.hpp"), *root.glob("*/include/supple/*.hpp")])
+    return core + [(path.parents[2].name, path) for path in others]
 
 
 def paragraphs(lines):

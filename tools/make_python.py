@@ -67,7 +67,7 @@ def generate(api):
     return "\n\n".join(parts) + "\n"
 
 
-PLACES = {"include", "simulation", "viewer"}  # of the descriptions
+PLACES = {"include", "libs", "simulation", "viewer"}  # of the descriptions
 
 
 class Described:

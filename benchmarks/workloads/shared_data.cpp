@@ -1,4 +1,5 @@
 #include "workloads/shared_data.hpp"
+#include "supple/mesh_file.hpp"
 
 #include <cstdlib>
 #include <filesystem>

@@ -17,6 +17,7 @@
 #include "inputs/parts.hpp"
 #include "session/messages/described_json.hpp"
 #include "supple/inspection.hpp"
+#include "supple/inspection_descriptions.hpp"
 #include "supple/orientation.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "supple/simulation.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::cli {
 
@@ -35,7 +36,9 @@ class MovingObjects {
   virtual const DetectResult& step(const DetectRequest& request) { return simulation_.step(request); }
   /// Call it before a step whose `turned` is read.
   void remember_positions();
-  virtual VerifyReport verify(const CallLimits& limits) { return simulation_.scene().verify(limits); }
+  virtual VerifyReport verify(const CallLimits& limits) {
+    return supple::verify(simulation_.scene(), limits);
+  }
   /// The objects whose straight paths in the last step are not their motion, ascending.
   virtual std::vector<ObjectId> turned();
   /// The energies of all bodies, ascending by object. When there are several ranks, only rank 0 has them.

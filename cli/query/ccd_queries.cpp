@@ -17,6 +17,7 @@
 #include "inputs/inputs.hpp"
 #include "query/query_report.hpp"
 #include "supple/error.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::cli {
 namespace {

@@ -27,6 +27,7 @@
 #include "supple/error.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "supple/version.hpp"
 
 namespace supple::cli {
@@ -157,7 +158,7 @@ void Run::find_distances(Interruption& interruption) {
     count_ = std::min<std::uint64_t>(total_, options_.limits.max_contacts);
   }
   if (!options_.verify || interruption.is_requested()) return;
-  std::vector<WrongAnswer> wrong = scene_.verify_distances(options_.max_distance, distances_);
+  std::vector<WrongAnswer> wrong = verify_distances(scene_, options_.max_distance, distances_);
   const auto hold = interruption.hold();
   wrong_ = std::move(wrong);
   checked_ = total_;
@@ -174,7 +175,7 @@ void Run::answer(Interruption& interruption) {
           interruption, read_points(options_.file), closest_,
           [&](const auto& points, const auto& results) { scene_.closest(points, results, closest); },
           [&](const auto& points, const auto& results) {
-            return scene_.verify_closest(points, results, closest);
+            return verify_closest(scene_, points, results, closest);
           });
     case SceneQuery::inside:
       return in_batches(
@@ -182,12 +183,12 @@ void Run::answer(Interruption& interruption) {
           [&](const auto& points, const auto& results) {
             scene_.inside(points, results, {}, {interruption.token()});
           },
-          [&](const auto& points, const auto& results) { return scene_.verify_inside(points, results); });
+          [&](const auto& points, const auto& results) { return verify_inside(scene_, points, results); });
     case SceneQuery::rays:
       return in_batches(
           interruption, read_rays(options_.file), hits_,
           [&](const auto& rays, const auto& results) { scene_.cast(rays, results, cast); },
-          [&](const auto& rays, const auto& results) { return scene_.verify_cast(rays, results, cast); });
+          [&](const auto& rays, const auto& results) { return verify_cast(scene_, rays, results, cast); });
     case SceneQuery::distance:
       return find_distances(interruption);
   }

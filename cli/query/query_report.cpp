@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "supple/difference_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/version.hpp"
 

@@ -8,6 +8,7 @@
 #include "base/json_writer.hpp"
 #include "query/query_file.hpp"
 #include "supple/result.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::cli {
 

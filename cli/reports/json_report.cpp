@@ -16,6 +16,7 @@
 #include "reports/result_json.hpp"
 #include "supple/difference_descriptions.hpp"
 #include "supple/option_descriptions.hpp"
+#include "supple/verify.hpp"
 #include "supple/version.hpp"
 
 namespace supple::cli {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "supple/result.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::cli {
 

@@ -14,6 +14,7 @@
 #include "moving/moving_objects.hpp"
 #include "reports/node_pair_report.hpp"
 #include "supple/result_descriptions.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::cli {
 namespace {

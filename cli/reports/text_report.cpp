@@ -13,6 +13,7 @@
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
 #include "supple/result_descriptions.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::cli {
 namespace {

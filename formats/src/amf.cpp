@@ -10,8 +10,8 @@
 
 #include "animation/transform.hpp"
 #include "core/error.hpp"
-#include "mesh/files/number_text.hpp"
-#include "mesh/files/quotes.hpp"
+#include "core/quotes.hpp"
+#include "files/number_text.hpp"
 #include "readers.hpp"
 #include "supple/trigonometry.hpp"
 #include "xml_nodes.hpp"

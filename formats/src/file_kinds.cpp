@@ -8,9 +8,9 @@
 #include <span>
 
 #include "core/error.hpp"
-#include "mesh/files/file_access.hpp"
-#include "mesh/files/quotes.hpp"
-#include "mesh/files/text_scanner.hpp"
+#include "core/quotes.hpp"
+#include "files/file_access.hpp"
+#include "files/text_scanner.hpp"
 
 namespace supple {
 namespace {

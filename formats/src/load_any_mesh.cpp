@@ -8,9 +8,10 @@
 
 #include "animation/model_readers.hpp"
 #include "file_kinds.hpp"
-#include "mesh/files/file_access.hpp"
+#include "files/file_access.hpp"
 #include "own_formats.hpp"
 #include "supple/formats.hpp"
+#include "supple/mesh_file.hpp"
 
 namespace supple {
 namespace {

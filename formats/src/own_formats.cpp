@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 #include "file_kinds.hpp"
-#include "mesh/files/file_access.hpp"
+#include "files/file_access.hpp"
 #include "readers.hpp"
 
 namespace supple {

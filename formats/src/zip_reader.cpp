@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/error.hpp"
-#include "mesh/files/quotes.hpp"
+#include "core/quotes.hpp"
 
 namespace supple {
 namespace {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <string>
 
-#include "mesh/files/mesh_formats.hpp"
+#include "files/mesh_formats.hpp"
 #include "supple/error.hpp"
 #include "support/check.hpp"
 

@@ -13,6 +13,7 @@
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/byte_reader.hpp"
 #include "support/check.hpp"
 #include "support/event_ledger.hpp"
@@ -289,7 +290,7 @@ class Life {
     }
     check_agreement(*results[0], *results[1]);
     if (kinds == 0 || !is_verified()) return;
-    check(scenes_[0].verify().agrees(), "the result differs from that of brute force");
+    check(verify(scenes_[0]).agrees(), "the result differs from that of brute force");
     if (kinds == 1) explain(*results[0]);
   }
 
@@ -324,22 +325,22 @@ class Life {
     std::array<Containment, 2> inside{};
     both([&](Scene& scene, std::size_t) {
       scene.closest(points, nearest);
-      check_answers(scene.verify_closest(points, nearest), "a closest point");
+      check_answers(verify_closest(scene, points, nearest), "a closest point");
       scene.cast(rays, hits);
-      check_answers(scene.verify_cast(rays, hits), "a hit");
+      check_answers(verify_cast(scene, rays, hits), "a hit");
       const std::array spheres{QuerySphere{points[0], draw_length()}};
       const auto overlaps = scene.overlaps(spheres);
-      check_answers(scene.verify_overlaps(spheres, overlaps), "an overlap");
+      check_answers(verify_overlaps(scene, spheres, overlaps), "an overlap");
     });
     both([&](Scene& scene, std::size_t) {
       scene.inside(points, inside);
-      check_answers(scene.verify_inside(points, inside), "a containment");
+      check_answers(verify_inside(scene, points, inside), "a containment");
     });
     const ObjectId a = objects_.front().id, b = objects_.back().id;
     both([&](Scene& scene, std::size_t) {
       const auto pair = scene.distance(a, b);
-      check_answers(scene.verify_distance(a, b, pair), "a distance");
-      check_answers(scene.verify_any_contact(a, b, scene.any_contact(a, b)), "whether two objects touch");
+      check_answers(verify_distance(scene, a, b, pair), "a distance");
+      check_answers(verify_any_contact(scene, a, b, scene.any_contact(a, b)), "whether two objects touch");
     });
   }
 

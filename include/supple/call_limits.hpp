@@ -8,7 +8,7 @@
 
 namespace supple {
 
-/// Limits of one query, or of one call of `Scene::verify`. `DetectRequest` has those of `detect`.
+/// Limits of one query, or of one call of `verify`. `DetectRequest` has those of `detect`.
 struct CallLimits {
 #ifdef __cpp_lib_jthread
   /// Any thread can stop the call: it ends within milliseconds. All answers are then empty: no result,

@@ -116,14 +116,4 @@ enum class Containment : std::uint8_t {
 template <>
 inline constexpr std::array words<Containment>{"outside", "on", "inside"};
 
-/// An answer that differs from that of exact brute force; see `Scene::verify_closest`.
-struct WrongAnswer {
-  /// The place of the query in its list. For distances, the place of the pair among all pairs of objects that
-  /// are tested, in ascending order.
-  std::uint64_t query = 0;
-  std::string found, expected;  ///< the answer, and that of brute force, in words
-
-  bool operator==(const WrongAnswer&) const = default;
-};
-
 }  // namespace supple

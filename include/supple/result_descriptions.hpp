@@ -4,7 +4,6 @@
 #include "supple/contact.hpp"
 #include "supple/continuous.hpp"
 #include "supple/description.hpp"
-#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/result.hpp"
@@ -23,12 +22,6 @@ inline constexpr std::array words<ImpactCertainty>{"certain", "within_tolerance"
 template <>
 inline constexpr std::array words<ElementPairKind>{"vf", "fv", "ee", "ve", "ev", "vv"};
 template <>
-inline constexpr std::array words<ContinuousDifference::Fault>{"missed", "added", "late", "early"};
-template <>
-inline constexpr std::array words<ProximityDifference::Fault>{"missed", "added", "inexact"};
-template <>
-inline constexpr std::array words<PenetrationDifference::Fault>{"missed", "added", "inexact"};
-template <>
 inline constexpr std::array words<NothingToTest>{"no_objects", "no_elements", "not_finite", "no_solid",
                                                  "no_motion",  "no_margin",   "one_object", "all_static",
                                                  "groups",     "filter"};
@@ -36,10 +29,6 @@ template <>
 inline constexpr std::array words<Lasting>{"begin", "stay"};
 template <>
 inline constexpr std::array words<ManifoldSource>{"curve", "pairs"};
-template <>
-inline constexpr std::array words<PairStage>{"not_tested",     "shared_vertex",  "inert",
-                                             "object_volumes", "octree_volumes", "triangle_boxes",
-                                             "exact_test",     "contact"};
 
 template <>
 struct Description<StepStats> {
@@ -124,33 +113,6 @@ struct Description<BroadPhaseStats> {
     count("regions_expanded", &Stats::regions_expanded, "groups", "Groups of regions that were created");
     count("regions_reduced", &Stats::regions_reduced, "regions", "Regions that became leaves again");
     count("regions_rebuilt", &Stats::regions_rebuilt, "times", "All regions were rebuilt");
-  }
-};
-
-template <>
-struct Description<OctreeStatistics> {
-  static constexpr const char* name = "OctreeStatistics";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
-    using Stats = OctreeStatistics;
-    const auto value = [&]<class Value>(const char* field, Value Stats::*member, const char* unit,
-                                        const char* doc) {
-      visitor(Field<Stats, Value>{.name = field, .member = member, .doc = doc, .unit = unit});
-    };
-    value("triangles", &Stats::triangles, "triangles", "Triangles in the octree");
-    value("vertices", &Stats::vertices, "vertices", "Vertices of these triangles");
-    value("nodes", &Stats::nodes, "nodes", "Nodes of eight children");
-    value("leaves", &Stats::leaves, "leaves", "Leaves");
-    value("depth", &Stats::depth, "levels", "Level of the deepest leaf; the root is level 0");
-    value("largest_leaf", &Stats::largest_leaf, "triangles", "Triangles of the largest leaf");
-    value("mean_leaf_size", &Stats::mean_leaf_size, "triangles", "Mean triangles of a leaf");
-    value("mean_node_width", &Stats::mean_node_width, "children", "Mean children of a node");
-    value("bytes", &Stats::bytes, "bytes", "Memory of the octree without the positions");
-    value("bytes_per_triangle", &Stats::bytes_per_triangle, "bytes", "The same per triangle");
-    value("leaves_by_level", &Stats::leaves_by_level, "leaves", "Leaves of each level from the root on");
-    value("cost", &Stats::cost, "visits", "Mean visits of a query by the surface-area heuristic");
-    value("degradation", &Stats::degradation, "", "The cost divided by the cost when the octree was built");
-    value("rebuilds", &Stats::rebuilds, "rebuilds", "Rebuilds of the octree since the object was added");
   }
 };
 

@@ -40,7 +40,7 @@ struct RigidTransform {
 ///
 /// ```cpp
 /// supple::Scene scene;
-/// auto rabbit = scene.add(supple::load_mesh("rabbit.obj"));
+/// auto rabbit = scene.add(rabbit_mesh);
 /// auto fish = scene.add(fish_mesh, {.self_collision = true});
 /// for (;;) {
 ///   scene.set_positions(rabbit, rabbit_xyz);
@@ -220,13 +220,6 @@ class Scene {
   /// Call it before the next `detect` to keep a result without a copy of its own. O(size of the lists),
   /// because the scene keeps copies, from which `detect` takes the contacts of objects that do not move.
   std::shared_ptr<const void> keep_result();
-  /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of
-  /// triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`;
-  /// exact boxes, sorted along an axis or in a tree, exclude pairs that are apart. Quadratic at worst: about
-  /// a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or
-  /// option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of
-  /// contacts. A stop ends it after the pair of objects that it compares.
-  VerifyReport verify(const CallLimits& limits = {}) const;
 
   // Queries. The first one after a change refits the objects that have moved, as `detect` does. They run on
   // all threads of the scene; results do not depend on their number. They do not change `result` and
@@ -289,38 +282,6 @@ class Scene {
   /// both are the same.
   bool any_contact(ObjectId a, ObjectId b, const CallLimits& limits = {}) const;
 
-  // Checks of answers. Each takes the arguments of a query and its answer at the present positions. It
-  // decides the query again by exact arithmetic over all triangles, without octrees and without code of the
-  // search, and lists every wrong answer, ascending by query. An answer is right when its objects, triangles,
-  // elements, features, counts and places are exact, its distance or t is within 4 units in the last place,
-  // and barycentric coordinates of closest points are within 2^-50. Points, normals, and the barycentric
-  // coordinates of rays and of pairs are not compared. All run on all threads of the scene. They throw
-  // `Error` as the query does, and when a list is not ordered by query. 1,000 points or rays on 70,000
-  // triangles take seconds.
-
-  /// Decides a query of this name again by exact brute force and returns its wrong answers.
-  std::vector<WrongAnswer> verify_closest(std::span<const Vec3d> points,
-                                          std::span<const std::optional<ClosestPoint>> results,
-                                          const ClosestOptions& options = {}) const;
-  std::vector<WrongAnswer> verify_cast(std::span<const Ray> rays,
-                                       std::span<const std::optional<RayHit>> results,
-                                       const CastOptions& options = {}) const;
-  std::vector<WrongAnswer> verify_cast_all(std::span<const Ray> rays, std::span<const ListedRayHit> hits,
-                                           const QueryFilter& filter = {}) const;
-  std::vector<WrongAnswer> verify_overlaps(std::span<const QueryBox> boxes, std::span<const Overlap> found,
-                                           const QueryFilter& filter = {}) const;
-  std::vector<WrongAnswer> verify_overlaps(std::span<const QuerySphere> spheres,
-                                           std::span<const Overlap> found,
-                                           const QueryFilter& filter = {}) const;
-  std::vector<WrongAnswer> verify_inside(std::span<const Vec3d> points, std::span<const Containment> results,
-                                         const QueryFilter& filter = {}) const;
-  /// For objects that intersect, the distance must be 0, and the elements must share a point and belong to
-  /// the triangles of the first contact.
-  std::vector<WrongAnswer> verify_distance(ObjectId a, ObjectId b,
-                                           const std::optional<ProximityPair>& found) const;
-  std::vector<WrongAnswer> verify_distances(double max_distance, std::span<const ProximityPair> found) const;
-  std::vector<WrongAnswer> verify_any_contact(ObjectId a, ObjectId b, bool found) const;
-
   std::vector<ObjectId> objects() const;  ///< ascending
   bool contains(ObjectId object) const;
   const std::string& name(ObjectId object) const;
@@ -358,7 +319,7 @@ class Scene {
   const SceneOptions& options() const;
 
  private:
-  friend class SceneInspector;
+  friend class SceneAccess;
   class Implementation;
   struct PairWeights {
     std::array<double, 3> a{}, b{};

@@ -1,6 +1,7 @@
 #pragma once
 
-/// All headers of the core, without the components models, simulation, formats and recording.
+/// All headers of the core, without the libraries files, verify, inspect, models, simulation, formats and
+/// recording.
 #include "supple/broad_phase.hpp"
 #include "supple/call_limits.hpp"
 #include "supple/comparison_options.hpp"
@@ -8,7 +9,6 @@
 #include "supple/continuous.hpp"
 #include "supple/distance.hpp"
 #include "supple/error.hpp"
-#include "supple/inspection.hpp"
 #include "supple/manifold.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"

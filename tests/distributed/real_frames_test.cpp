@@ -9,6 +9,7 @@
 #include "random_lives.hpp"
 #include "supple/distributed.hpp"
 #include "supple/mesh.hpp"
+#include "supple/mesh_file.hpp"
 #include "supple/scene.hpp"
 #include "support/shared_meshes.hpp"
 

@@ -12,6 +12,7 @@
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 
 namespace supple {
 namespace {
@@ -58,7 +59,7 @@ VerifyReport verify_lives(std::uint64_t seed, ContactKinds kinds, int objects, R
     const VerifyReport found = lives.distributed.verify();
     EXPECT_TRUE(found.agrees());
     if (rank_of_world() == 0)
-      expect_same_report(found, lives.plain.verify(),
+      expect_same_report(found, verify(lives.plain),
                          "seed " + std::to_string(seed) + " step " + std::to_string(step));
     sum.intersecting_pairs += found.intersecting_pairs;
     sum.touching_element_pairs += found.touching_element_pairs;
@@ -98,7 +99,7 @@ TEST(DistributedVerify, SaysWhatIsMissed) {
   lives.plain.detect({.contacts = kinds_without_time});
   lives.distributed.detect({.contacts = kinds_without_time});
   *is_open = true;
-  const VerifyReport expected = lives.plain.verify();
+  const VerifyReport expected = verify(lives.plain);
   EXPECT_GT(expected.differences.size(), 0u);
   EXPECT_GT(expected.proximity_differences.size(), 0u);
   EXPECT_GT(expected.penetration_differences.size(), 0u);

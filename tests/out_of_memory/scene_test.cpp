@@ -18,6 +18,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/soups.hpp"
 
 namespace supple::scene_test {
@@ -427,7 +428,7 @@ TEST(SceneOutOfMemory, AFailedChangeHasNoEffect) {
       EXPECT_EQ(state(*world), before);
       world->scene.detect();
       EXPECT_EQ(SceneInspector(world->scene).validate(), "");
-      EXPECT_TRUE(world->scene.verify().agrees());
+      EXPECT_TRUE(verify(world->scene).agrees());
       call(*world);
     }
   });

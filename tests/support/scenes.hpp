@@ -8,6 +8,7 @@
 
 #include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 
 namespace supple {
 
@@ -139,7 +140,7 @@ inline std::uint64_t hash_of_penetrations(const DetectResult& result,
 /// One line per difference that `verify` finds; empty if it agrees.
 inline std::string differences(const Scene& scene) {
   std::string text;
-  for (const Difference& d : scene.verify().differences) {
+  for (const Difference& d : verify(scene).differences) {
     text += (d.missed ? "missed " : "reported ") + std::to_string(d.object_a.index) + ":" +
             std::to_string(d.triangle_a) + " " + std::to_string(d.object_b.index) + ":" +
             std::to_string(d.triangle_b) + "\n";

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "supple/mesh_file.hpp"
 #include "support/shared_meshes.hpp"
 
 namespace supple {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "elements/element_mesh.hpp"
-#include "mesh/files/number_text.hpp"
+#include "files/number_text.hpp"
 #include "supple/mesh.hpp"
 #include "support/random.hpp"
 

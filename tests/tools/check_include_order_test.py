@@ -31,6 +31,11 @@ GOOD = {
     "src/supple/mesh/scanner.hpp": "",
     "formats/include/supple/formats.hpp": '#include "supple/types.hpp"\n',
     "formats/src/load.cpp": '#include "mesh/scanner.hpp"\n#include "supple/formats.hpp"\n',
+    "libs/files/include/supple/mesh_file.hpp": '#include "supple/types.hpp"\n',
+    "libs/files/scanner.hpp": '#include "core/parallel.hpp"\n',
+    "libs/files/obj.cpp": '#include "files/scanner.hpp"\n#include "supple/mesh_file.hpp"\n',
+    "libs/verify/verify.hpp": "",
+    "formats/src/text.cpp": '#include "files/scanner.hpp"\n',
     "recording/include/supple/recording.hpp": '#include "supple/types.hpp"\n',
     "recording/src/layout.hpp": "#include <hdf5.h>\n",
     "recording/src/reader.cpp": '#include "layout.hpp"\n#include "supple/recording.hpp"\n',
@@ -127,6 +132,15 @@ class CheckIncludeOrder(unittest.TestCase):
     def test_formats_build_on_meshes_only(self):
         self.expect("formats/src/bad.cpp", '\n#include "octree/tree.hpp"\n', "mesh comes before octree")
         self.expect("src/supple/mesh/bad.cpp", '\n#include "octree/tree.hpp"\n', "mesh comes before octree")
+
+    def test_the_core_knows_no_library(self):
+        for name in ("files/scanner.hpp", "supple/mesh_file.hpp"):
+            self.expect("src/supple/octree/bad.cpp", f'\n#include "{name}"\n', "by its layer")
+        self.expect("include/supple/bad.hpp", '\n#include "supple/mesh_file.hpp"\n', "only those of the core")
+
+    def test_libraries_include_those_that_they_name(self):
+        self.expect("libs/files/bad.cpp", '\n#include "verify/verify.hpp"\n', "by its layer")
+        self.expect("formats/src/bad.cpp", '\n#include "verify/verify.hpp"\n', "by its layer")
 
     def test_experiments_are_built_on_the_command_line(self):
         files = {"cli/text.hpp": "", "experiments/fit.hpp": "", "experiments/fit.cpp": '\n#include "text.hpp"\n'}

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "session.hpp"
+#include "supple/inspection_descriptions.hpp"
 #include "supple/models.hpp"
 #include "supple/result_descriptions.hpp"
 #include "support/viewer_messages.hpp"

@@ -6,6 +6,7 @@
 #include "options.hpp"
 #include "records.hpp"
 #include "scene.hpp"
+#include "supple/mesh_file.hpp"
 #include "supple/models.hpp"
 #include "supple/recording.hpp"
 

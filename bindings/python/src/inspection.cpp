@@ -8,6 +8,7 @@
 #include "options.hpp"
 #include "records.hpp"
 #include "scene.hpp"
+#include "supple/inspection_descriptions.hpp"
 #include "supple/orientation.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/topology.hpp"

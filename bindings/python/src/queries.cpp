@@ -3,6 +3,7 @@
 #include "arrays.hpp"
 #include "records.hpp"
 #include "scene.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::python {
 namespace {
@@ -160,8 +161,8 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
          std::optional<ObjectId> only, std::uint32_t mask, double max_distance, bool is_signed) {
         const auto found = answers_of<ClosestPoint>(answers);
         return verify_query(core, [&](const Scene& s) {
-          return s.verify_closest(rows_of<Vec3d>(points), found,
-                                  {filter_with(only, mask), max_distance, is_signed, {}});
+          return verify_closest(s, rows_of<Vec3d>(points), found,
+                                {filter_with(only, mask), max_distance, is_signed, {}});
         });
       },
       nb::arg(), nb::arg(), object(), nb::arg(), nb::arg(), nb::arg());
@@ -171,7 +172,7 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
          std::uint32_t mask, bool count_hits) {
         const auto found = answers_of<RayHit>(answers);
         return verify_query(core, [&](const Scene& s) {
-          return s.verify_cast(rows_of<Ray>(rays), found, {filter_with(only, mask), count_hits, {}});
+          return verify_cast(s, rows_of<Ray>(rays), found, {filter_with(only, mask), count_hits, {}});
         });
       },
       nb::arg(), nb::arg(), object(), nb::arg(), nb::arg());
@@ -180,8 +181,8 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       [](SceneCore& core, const Rays& rays, const List<std::uint8_t>& hits, std::optional<ObjectId> only,
          std::uint32_t mask) {
         return verify_query(core, [&](const Scene& s) {
-          return s.verify_cast_all(rows_of<Ray>(rays), records_of<ListedRayHit>(hits),
-                                   filter_with(only, mask));
+          return verify_cast_all(s, rows_of<Ray>(rays), records_of<ListedRayHit>(hits),
+                                 filter_with(only, mask));
         });
       },
       nb::arg(), nb::arg(), object(), nb::arg());
@@ -190,8 +191,8 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       [](SceneCore& core, const Rays& boxes, const List<std::uint8_t>& found, std::optional<ObjectId> only,
          std::uint32_t mask) {
         return verify_query(core, [&](const Scene& s) {
-          return s.verify_overlaps(rows_of<QueryBox>(boxes), records_of<Overlap>(found),
-                                   filter_with(only, mask));
+          return verify_overlaps(s, rows_of<QueryBox>(boxes), records_of<Overlap>(found),
+                                 filter_with(only, mask));
         });
       },
       nb::arg(), nb::arg(), object(), nb::arg());
@@ -200,8 +201,8 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
       [](SceneCore& core, const SphereRows& spheres, const List<std::uint8_t>& found,
          std::optional<ObjectId> only, std::uint32_t mask) {
         return verify_query(core, [&](const Scene& s) {
-          return s.verify_overlaps(rows_of<QuerySphere>(spheres), records_of<Overlap>(found),
-                                   filter_with(only, mask));
+          return verify_overlaps(s, rows_of<QuerySphere>(spheres), records_of<Overlap>(found),
+                                 filter_with(only, mask));
         });
       },
       nb::arg(), nb::arg(), object(), nb::arg());
@@ -212,23 +213,23 @@ void bind_queries(nb::module_&, nb::class_<SceneCore>& scene) {
         std::vector<Containment> found(answers.size());
         for (std::size_t i = 0; i < found.size(); ++i) found[i] = static_cast<Containment>(answers.data()[i]);
         return verify_query(core, [&](const Scene& s) {
-          return s.verify_inside(rows_of<Vec3d>(points), found, filter_with(only, mask));
+          return verify_inside(s, rows_of<Vec3d>(points), found, filter_with(only, mask));
         });
       },
       nb::arg(), nb::arg(), object(), nb::arg());
   scene.def("verify_distance", [](SceneCore& core, ObjectId a, ObjectId b, const List<std::uint8_t>& found) {
     const auto pairs = records_of<ProximityPair>(found);
     return verify_query(core, [&](const Scene& s) {
-      return s.verify_distance(a, b, pairs.empty() ? std::nullopt : std::optional(pairs.front()));
+      return verify_distance(s, a, b, pairs.empty() ? std::nullopt : std::optional(pairs.front()));
     });
   });
   scene.def("verify_distances", [](SceneCore& core, double max_distance, const List<std::uint8_t>& found) {
     return verify_query(core, [&](const Scene& s) {
-      return s.verify_distances(max_distance, records_of<ProximityPair>(found));
+      return verify_distances(s, max_distance, records_of<ProximityPair>(found));
     });
   });
   scene.def("verify_any_contact", [](SceneCore& core, ObjectId a, ObjectId b, bool found) {
-    return verify_query(core, [&](const Scene& s) { return s.verify_any_contact(a, b, found); });
+    return verify_query(core, [&](const Scene& s) { return verify_any_contact(s, a, b, found); });
   });
 }
 

@@ -3,6 +3,7 @@
 #include "records.hpp"
 #include "scene.hpp"
 #include "supple/difference_descriptions.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::python {
 namespace {

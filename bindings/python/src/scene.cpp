@@ -11,6 +11,7 @@
 #include "options.hpp"
 #include "records.hpp"
 #include "shared_calls.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::python {
 namespace {
@@ -181,7 +182,7 @@ void bind_scene(nb::module_& module) {
       [](SceneCore& core, Stop* stop) {
         const Together together(core.guard());
         return report_of(run_or_fail(
-            stop, "verify", [&](std::stop_token token) { return core.scene().verify({std::move(token)}); }));
+            stop, "verify", [&](std::stop_token token) { return verify(core.scene(), {std::move(token)}); }));
       },
       nb::arg().none());
 

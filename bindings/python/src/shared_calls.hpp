@@ -7,6 +7,7 @@
 #include "records.hpp"
 #include "scene.hpp"
 #include "supple/difference_descriptions.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::python {
 

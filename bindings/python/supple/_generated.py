@@ -79,27 +79,6 @@ class ImpactCertainty(enum.IntEnum):
     'So close that floating point cannot decide. Only when `exact` is off.'
 
 
-class PairStage(enum.IntEnum):
-    'The stage that separated two triangles, in the order of the stages. With continuous contacts, a stage separates the triangles for the whole step. Their elements are tested separately, so `contact` then takes precedence over every stage except the first.'
-
-    not_tested = 0
-    'The scene does not test these objects (static, group and mask, filter, no self-collision) or these triangles (groups of vertices).'
-    shared_vertex = 1
-    'Both in one object, with a common vertex, or the same triangle: no contact, unless `Neighbours.exact` finds that they also meet elsewhere.'
-    inert = 2
-    'a corner is not a finite number'
-    object_volumes = 3
-    'the volumes of the objects are apart: the broad phase'
-    octree_volumes = 4
-    'the volumes of two octree cells are apart: the narrow phase'
-    triangle_boxes = 5
-    'the boxes of the triangles are apart: the leaves'
-    exact_test = 6
-    'the triangles are apart: the exact stage'
-    contact = 7
-    'the triangles intersect: a contact'
-
-
 class Lasting(enum.IntEnum):
     'Whether something was there in the last step. What ends is no longer listed.'
 
@@ -239,6 +218,38 @@ class NothingToTest(enum.IntEnum):
     'the pair filter excludes all pairs'
 
 
+class ResultPlacement(enum.IntEnum):
+    'On which rank the contacts of a step are.'
+
+    gathered = 0
+    'all on rank 0: the lists of `Scene.detect`'
+    owner = 1
+    'On the rank that added object a; of an object in parts, on the lowest rank that has one of them. The events and pairs of two objects are on a rank that their ids choose.'
+    spread = 2
+    'Where they were found, so nothing is sent: as even as the work. The events and pairs of two objects are on a rank that their ids choose.'
+
+
+class PairStage(enum.IntEnum):
+    'The stage that separated two triangles, in the order of the stages. With continuous contacts, a stage separates the triangles for the whole step. Their elements are tested separately, so `contact` then takes precedence over every stage except the first.'
+
+    not_tested = 0
+    'The scene does not test these objects (static, group and mask, filter, no self-collision) or these triangles (groups of vertices).'
+    shared_vertex = 1
+    'Both in one object, with a common vertex, or the same triangle: no contact, unless `Neighbours.exact` finds that they also meet elsewhere.'
+    inert = 2
+    'a corner is not a finite number'
+    object_volumes = 3
+    'the volumes of the objects are apart: the broad phase'
+    octree_volumes = 4
+    'the volumes of two octree cells are apart: the narrow phase'
+    triangle_boxes = 5
+    'the boxes of the triangles are apart: the leaves'
+    exact_test = 6
+    'the triangles are apart: the exact stage'
+    contact = 7
+    'the triangles intersect: a contact'
+
+
 class ContinuousDifferenceFault(enum.IntEnum):
     'What is wrong with the pair.'
 
@@ -274,17 +285,6 @@ class PenetrationDifferenceFault(enum.IntEnum):
     'reported with another triangle than the nearest, or with an inaccurate depth; or it does not leave b when it moves along the normal of the curve by its depth'
 
 
-class ResultPlacement(enum.IntEnum):
-    'On which rank the contacts of a step are.'
-
-    gathered = 0
-    'all on rank 0: the lists of `Scene.detect`'
-    owner = 1
-    'On the rank that added object a; of an object in parts, on the lowest rank that has one of them. The events and pairs of two objects are on a rank that their ids choose.'
-    spread = 2
-    'Where they were found, so nothing is sent: as even as the work. The events and pairs of two objects are on a rank that their ids choose.'
-
-
 class Integrator(enum.IntEnum):
     'How a time step advances positions and velocities.'
 
@@ -296,7 +296,7 @@ class Integrator(enum.IntEnum):
     'Implicit: up to six sparse linear systems per step. First order, stable at any stiffness.'
 
 
-ENUMERATIONS = [ObjectOctreeBuild, SphereFit, RegionSphereTest, Descent, FeatureKind, IntersectionKind, ElementPairKind, ImpactCertainty, PairStage, Lasting, ManifoldSource, BoundingVolume, BroadPhaseMethod, ContactKinds, ElementKinds, ContinuousListing, Neighbours, CurveKind, ProximityListing, Containment, NothingToTest, ContinuousDifferenceFault, ProximityDifferenceFault, PenetrationDifferenceFault, ResultPlacement, Integrator]
+ENUMERATIONS = [ObjectOctreeBuild, SphereFit, RegionSphereTest, Descent, FeatureKind, IntersectionKind, ElementPairKind, ImpactCertainty, Lasting, ManifoldSource, BoundingVolume, BroadPhaseMethod, ContactKinds, ElementKinds, ContinuousListing, Neighbours, CurveKind, ProximityListing, Containment, NothingToTest, ResultPlacement, PairStage, ContinuousDifferenceFault, ProximityDifferenceFault, PenetrationDifferenceFault, Integrator]
 
 
 #: The comments of functions and methods in the headers.
@@ -565,24 +565,6 @@ CONTRACTS = {
         '`ObjectOptions.user_data`',
     'Scene::user_data':
         '`ObjectOptions.user_data`',
-    'Scene::verify':
-        'Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`; exact boxes, sorted along an axis or in a tree, exclude pairs that are apart. Quadratic at worst: about a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of contacts. A stop ends it after the pair of objects that it compares.',
-    'Scene::verify_any_contact':
-        'For objects that intersect, the distance must be 0, and the elements must share a point and belong to the triangles of the first contact.',
-    'Scene::verify_cast':
-        'Decides a query of this name again by exact brute force and returns its wrong answers.',
-    'Scene::verify_cast_all':
-        'Decides a query of this name again by exact brute force and returns its wrong answers.',
-    'Scene::verify_closest':
-        'Decides a query of this name again by exact brute force and returns its wrong answers.',
-    'Scene::verify_distance':
-        'For objects that intersect, the distance must be 0, and the elements must share a point and belong to the triangles of the first contact.',
-    'Scene::verify_distances':
-        'For objects that intersect, the distance must be 0, and the elements must share a point and belong to the triangles of the first contact.',
-    'Scene::verify_inside':
-        'Decides a query of this name again by exact brute force and returns its wrong answers.',
-    'Scene::verify_overlaps':
-        'Decides a query of this name again by exact brute force and returns its wrong answers.',
     'Scene::vertex_count':
         '`ObjectOptions.user_data`',
     'Scene::vertices_of':
@@ -656,9 +638,9 @@ CONTRACTS = {
     'ValueRange::or_zero':
         'The finite values from `lowest` on, from `lowest` to `highest`, or above `lowest`.',
     'VerifyReport::agrees':
-        'See `VerifyReport::agrees` in supple/result.hpp.',
+        'See `VerifyReport::agrees` in supple/verify.hpp.',
     'VerifyReport::difference_count':
-        'See `VerifyReport::difference_count` in supple/result.hpp.',
+        'See `VerifyReport::difference_count` in supple/verify.hpp.',
     'advice_for_open_surface':
         'How to close a surface that is open, as a clause for messages: close the holes, or weld the seams.',
     'apply_wave_motion':
@@ -801,6 +783,24 @@ CONTRACTS = {
         'The set of a text such as `b,a`; nothing when a part of it is not a word, or the word for the empty set is not alone.',
     'value_of_word':
         'The value of a word; nothing when no value has this word.',
+    'verify':
+        'Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`; exact boxes, sorted along an axis or in a tree, exclude pairs that are apart. Quadratic at worst: about a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of contacts. A stop ends it after the pair of objects that it compares.',
+    'verify_any_contact':
+        'See `verify_any_contact` in supple/verify.hpp.',
+    'verify_cast':
+        'See `verify_cast` in supple/verify.hpp.',
+    'verify_cast_all':
+        'See `verify_cast_all` in supple/verify.hpp.',
+    'verify_closest':
+        'Decides a query of this name again by exact brute force and returns its wrong answers.',
+    'verify_distance':
+        'For objects that intersect, the distance must be 0, and the elements must share a point and belong to the triangles of the first contact.',
+    'verify_distances':
+        'See `verify_distances` in supple/verify.hpp.',
+    'verify_inside':
+        'See `verify_inside` in supple/verify.hpp.',
+    'verify_overlaps':
+        'See `verify_overlaps` in supple/verify.hpp.',
     'vertices_at_same_position':
         'For each vertex the first one with the same coordinates. Equals `ObjectOptions.same_vertex` of `ObjectOptions.weld`. A vertex with a NaN has no equal. O(n).',
     'viewer::View::close':

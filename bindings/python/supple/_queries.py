@@ -174,7 +174,7 @@ class Queries:
 
     # Checks of answers.
 
-    @contract("Scene::verify_closest")
+    @contract("verify_closest")
     def verify_closest(
         self,
         points: Any,
@@ -196,7 +196,7 @@ class Queries:
             )
         )
 
-    @contract("Scene::verify_cast")
+    @contract("verify_cast")
     def verify_cast(
         self,
         origins: Any,
@@ -217,7 +217,7 @@ class Queries:
             )
         )
 
-    @contract("Scene::verify_cast_all")
+    @contract("verify_cast_all")
     def verify_cast_all(
         self, origins: Any, directions: Any, hits: Table, *, object: Any = None, mask: int = 0xFFFFFFFF
     ) -> list[WrongAnswer]:
@@ -230,7 +230,7 @@ class Queries:
             )
         )
 
-    @contract("Scene::verify_overlaps")
+    @contract("verify_overlaps")
     def verify_overlaps_boxes(
         self, lowest: Any, highest: Any, found: Table, *, object: Any = None, mask: int = 0xFFFFFFFF
     ) -> list[WrongAnswer]:
@@ -243,7 +243,7 @@ class Queries:
             )
         )
 
-    @contract("Scene::verify_overlaps")
+    @contract("verify_overlaps")
     def verify_overlaps_spheres(
         self, centers: Any, radii: Any, found: Table, *, object: Any = None, mask: int = 0xFFFFFFFF
     ) -> list[WrongAnswer]:
@@ -253,7 +253,7 @@ class Queries:
             )
         )
 
-    @contract("Scene::verify_inside")
+    @contract("verify_inside")
     def verify_inside(
         self, points: Any, answers: Any, *, object: Any = None, mask: int = 0xFFFFFFFF
     ) -> list[WrongAnswer]:
@@ -266,16 +266,16 @@ class Queries:
             )
         )
 
-    @contract("Scene::verify_distance")
+    @contract("verify_distance")
     def verify_distance(self, a: Any, b: Any, found: ProximityPair | None) -> list[WrongAnswer]:
         rows = np.empty(0, np.uint8) if found is None else _bytes(found._row)
         return _wrong(self._core.verify_distance(self._id(a), self._id(b), rows))
 
-    @contract("Scene::verify_distances")
+    @contract("verify_distances")
     def verify_distances(self, max_distance: float, found: Table) -> list[WrongAnswer]:
         return _wrong(self._core.verify_distances(max_distance, _bytes(found)))
 
-    @contract("Scene::verify_any_contact")
+    @contract("verify_any_contact")
     def verify_any_contact(self, a: Any, b: Any, found: bool) -> list[WrongAnswer]:
         return _wrong(self._core.verify_any_contact(self._id(a), self._id(b), bool(found)))
 

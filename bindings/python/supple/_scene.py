@@ -183,7 +183,7 @@ groups, which run without it. It must not call the scene. What it raises ends th
         """The result of the last `detect`; empty before the first one."""
         return self._result
 
-    @contract("Scene::verify")
+    @contract("verify")
     def verify(self, *, stop: Stop | None = None) -> VerifyReport:
         return VerifyReport(self._core.verify(stop), self._core)
 

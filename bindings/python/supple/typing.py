@@ -836,7 +836,7 @@ class ContinuousContact(Record):
 
 
 class ContinuousDifference(Record):
-    'A pair of elements on which `Scene.verify` and the last `Scene.detect` differ.'
+    'A pair of elements on which `verify` and the last `Scene.detect` differ.'
 
     __slots__ = ()
     object_a: np.uint32
@@ -862,7 +862,7 @@ class ContinuousDifference(Record):
 
 
 class Difference(Record):
-    'A pair on which `Scene.verify` and the last `Scene.detect` differ.'
+    'A pair on which `verify` and the last `Scene.detect` differ.'
 
     __slots__ = ()
     object_a: np.uint32
@@ -1210,7 +1210,7 @@ class Penetration(Record):
 
 
 class PenetrationDifference(Record):
-    'A vertex of a on which `Scene.verify` and the last `Scene.detect` differ: inside b, on its surface, the smallest vertex of a contained part, or inside b within a curve.'
+    'A vertex of a on which `verify` and the last `Scene.detect` differ: inside b, on its surface, the smallest vertex of a contained part, or inside b within a curve.'
 
     __slots__ = ()
     object_a: np.uint32
@@ -1252,7 +1252,7 @@ class PenetrationGroup(Record):
 
 
 class ProximityDifference(Record):
-    'A pair of features or elements on which `Scene.verify` and the last `Scene.detect` differ.'
+    'A pair of features or elements on which `verify` and the last `Scene.detect` differ.'
 
     __slots__ = ()
     object_a: np.uint32

@@ -15,6 +15,7 @@
 #include "supple/result.hpp"
 #include "supple/safe_step.hpp"
 #include "supple/types.hpp"
+#include "supple/verify.hpp"
 #include "supple/views.hpp"
 
 namespace supple {

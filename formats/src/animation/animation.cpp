@@ -6,7 +6,7 @@
 #include "animation/animated_model.hpp"
 #include "animation/model_readers.hpp"
 #include "core/error.hpp"
-#include "mesh/files/file_access.hpp"
+#include "files/file_access.hpp"
 
 namespace supple {
 

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "mesh/files/byte_order.hpp"
-#include "mesh/files/file_access.hpp"
-#include "mesh/files/quotes.hpp"
+#include "core/quotes.hpp"
+#include "files/byte_order.hpp"
+#include "files/file_access.hpp"
 
 namespace supple {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "mesh/files/quotes.hpp"
+#include "core/quotes.hpp"
 #include "xml_nodes.hpp"
 #include "zip_reader.hpp"
 

@@ -13,11 +13,11 @@
 #include "assimp/assimp_frame.hpp"
 #include "assimp/collada_text.hpp"
 #include "core/error.hpp"
+#include "core/quotes.hpp"
 #include "file_kinds.hpp"
-#include "mesh/files/file_access.hpp"
-#include "mesh/files/quotes.hpp"
-#include "mesh/files/text_scanner.hpp"
-#include "mesh/polygon/polygon.hpp"
+#include "files/file_access.hpp"
+#include "files/polygon/polygon.hpp"
+#include "files/text_scanner.hpp"
 
 namespace supple {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "files/polygon/polygon.hpp"
 #include "geometry/exact_predicates.hpp"
-#include "mesh/polygon/polygon.hpp"
 
 namespace supple {
 namespace {

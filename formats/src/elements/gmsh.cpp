@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/quotes.hpp"
 #include "elements/element_mesh.hpp"
 #include "elements/node_numbers.hpp"
 #include "elements/scalar_reader.hpp"
-#include "mesh/files/quotes.hpp"
 #include "readers.hpp"
 
 namespace supple {

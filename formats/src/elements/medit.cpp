@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/quotes.hpp"
 #include "elements/element_mesh.hpp"
 #include "elements/scalar_reader.hpp"
-#include "mesh/files/quotes.hpp"
 #include "readers.hpp"
 
 namespace supple {

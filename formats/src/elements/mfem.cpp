@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/quotes.hpp"
 #include "elements/element_mesh.hpp"
 #include "elements/scalar_reader.hpp"
-#include "mesh/files/quotes.hpp"
 #include "readers.hpp"
 
 namespace supple {

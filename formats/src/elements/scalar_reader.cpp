@@ -1,7 +1,7 @@
 #include "elements/scalar_reader.hpp"
 
 #include "core/error.hpp"
-#include "mesh/files/byte_order.hpp"
+#include "files/byte_order.hpp"
 
 namespace supple {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "mesh/files/text_scanner.hpp"
+#include "files/text_scanner.hpp"
 
 namespace supple {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "core/quotes.hpp"
 #include "elements/element_mesh.hpp"
 #include "elements/scalar_reader.hpp"
 #include "elements/vtk_cells.hpp"
-#include "mesh/files/quotes.hpp"
 #include "readers.hpp"
 
 namespace supple {

@@ -11,12 +11,12 @@
 
 #include "base64.hpp"
 #include "core/error.hpp"
+#include "core/quotes.hpp"
 #include "elements/element_mesh.hpp"
 #include "elements/scalar_reader.hpp"
 #include "elements/vtk_cells.hpp"
-#include "mesh/files/byte_order.hpp"
-#include "mesh/files/number_text.hpp"
-#include "mesh/files/quotes.hpp"
+#include "files/byte_order.hpp"
+#include "files/number_text.hpp"
 #include "readers.hpp"
 #include "xml_nodes.hpp"
 

@@ -20,9 +20,9 @@
 
 #include "animation/model_readers.hpp"
 #include "core/error.hpp"
-#include "mesh/files/file_access.hpp"
-#include "mesh/files/quotes.hpp"
-#include "mesh/polygon/polygon.hpp"
+#include "core/quotes.hpp"
+#include "files/file_access.hpp"
+#include "files/polygon/polygon.hpp"
 
 namespace supple {
 namespace {

@@ -3,9 +3,9 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/quotes.hpp"
+#include "files/byte_order.hpp"
 #include "gltf/gltf_file.hpp"
-#include "mesh/files/byte_order.hpp"
-#include "mesh/files/quotes.hpp"
 
 namespace supple {
 namespace {

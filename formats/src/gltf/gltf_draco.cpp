@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "mesh/files/quotes.hpp"
+#include "core/quotes.hpp"
 
 namespace supple {
 

@@ -9,9 +9,9 @@
 
 #include "base64.hpp"
 #include "core/error.hpp"
-#include "mesh/files/byte_order.hpp"
-#include "mesh/files/file_access.hpp"
-#include "mesh/files/quotes.hpp"
+#include "core/quotes.hpp"
+#include "files/byte_order.hpp"
+#include "files/file_access.hpp"
 #include "supple/utf8.hpp"
 
 namespace supple {

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/quotes.hpp"
 #include "gltf/gltf_file.hpp"
-#include "mesh/files/quotes.hpp"
 
 namespace supple {
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "files/number_text.hpp"
 #include "gltf/gltf_draco.hpp"
 #include "gltf/gltf_file.hpp"
-#include "mesh/files/number_text.hpp"
 
 namespace supple {
 namespace {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "mesh/files/number_text.hpp"
 #include "motion/check_options.hpp"
 #include "motion/element_forces.hpp"
 #include "motion/plastic_flow.hpp"
@@ -18,9 +17,9 @@ namespace {
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
 std::string in_digits(double value) {
-  std::string text;
-  append_double(text, value);
-  return text;
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
 }
 
 /// Three digits are enough for an estimated bound.

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "mesh/files/quotes.hpp"
+#include "core/quotes.hpp"
 #include "supple/mesh.hpp"
 
 namespace supple {

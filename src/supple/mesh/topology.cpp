@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/files/vertex_welder.hpp"
 #include "mesh/vertex_sets.hpp"
+#include "mesh/vertex_welder.hpp"
 
 namespace supple {
 namespace {

@@ -13,7 +13,6 @@
 #include "octree/volumes/box_kernels.hpp"
 #include "octree/volumes/node_volumes.hpp"
 #include "octree/volumes/sphere_fit.hpp"
-#include "supple/inspection.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/types.hpp"
@@ -119,7 +118,8 @@ class ObjectOctree {
   /// The empty string when every invariant holds and every volume encloses its triangles; otherwise what is
   /// wrong. Spheres fitted to boxes need not enclose and are not checked.
   std::string validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const;
-  OctreeStatistics statistics() const;
+  /// Memory without that of the positions.
+  std::size_t bytes() const;
 
  private:
   void list_leaf_vertices(const Parallel& parallel);

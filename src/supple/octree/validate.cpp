@@ -127,43 +127,16 @@ std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const
   return Validation(*this, vertices, inert, enclosing_spheres, options_.arity).run();
 }
 
-OctreeStatistics ObjectOctree::statistics() const {
-  OctreeStatistics result;
-  result.triangles = triangles_.size();
-  result.vertices = vertex_count_;
-  result.nodes = nodes_.size();
-  std::uint64_t children = 0;
-  for (const OctreeNode& node : nodes_) {
-    children += node.child_count;
-    for (int child = 0; child < node.child_count; ++child) {
-      if (node.is_inner(child)) continue;
-      // An object of one leaf is that leaf: the root itself, not an octant of it.
-      const std::uint32_t level = node.child_count == 1 ? 0 : node.level + 1u;
-      if (level >= result.leaves_by_level.size()) result.leaves_by_level.resize(level + 1);
-      ++result.leaves_by_level[level];
-      ++result.leaves;
-      result.depth = std::max(result.depth, level);
-      result.largest_leaf =
-          std::max(result.largest_leaf, node.first_triangle[child + 1] - node.first_triangle[child]);
-    }
-  }
-  if (result.leaves > 0) {
-    result.mean_leaf_size = static_cast<double>(result.triangles) / static_cast<double>(result.leaves);
-    result.mean_node_width = static_cast<double>(children) / static_cast<double>(result.nodes);
-  }
-  result.bytes = nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(ChildBoxes) +
-                 spheres_.capacity() * sizeof(ChildSpheres) + volumes_.bytes() +
-                 triangles_.capacity() * sizeof(Triangle) +
-                 (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
-                  first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity() +
-                  first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity()) *
-                     sizeof(std::uint32_t) +
-                 cell_numbers_.capacity() * sizeof(std::uint64_t) + leaf_corners_.capacity() +
-                 is_stale_.capacity() + is_current_.capacity();
-  if (result.triangles > 0) {
-    result.bytes_per_triangle = static_cast<double>(result.bytes) / static_cast<double>(result.triangles);
-  }
-  return result;
+std::size_t ObjectOctree::bytes() const {
+  return nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(ChildBoxes) +
+         spheres_.capacity() * sizeof(ChildSpheres) + volumes_.bytes() +
+         triangles_.capacity() * sizeof(Triangle) +
+         (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
+          first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity() +
+          first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity()) *
+             sizeof(std::uint32_t) +
+         cell_numbers_.capacity() * sizeof(std::uint64_t) + leaf_corners_.capacity() + is_stale_.capacity() +
+         is_current_.capacity();
 }
 
 }  // namespace supple

@@ -4,7 +4,6 @@
 #include "core/timer.hpp"
 #include "scene/scene_implementation.hpp"
 #include "supple/option_descriptions.hpp"
-#include "verify/verify.hpp"
 
 namespace supple {
 Scene::Implementation::Implementation(const SceneOptions& options) : world(options) {}
@@ -92,15 +91,6 @@ void Scene::Implementation::remove(ObjectId id) {
   world.remove(id);
   queries.forget(id);
   events_.release(id);
-}
-
-VerifyReport Scene::Implementation::verify(const CallLimits& limits) const {
-  if (!is_current()) fail("verify: nothing was detected at the present positions; call detect first");
-  if (result.truncated)
-    fail("verify: the last detect stopped at max_contacts; call detect with a larger max_contacts first");
-  if (detection.question().contacts == ContactKinds::none)
-    fail("verify: the last detect searched no contacts, so there is nothing to compare");
-  return supple::verify(world, detection.question(), result, limits);
 }
 
 }  // namespace supple

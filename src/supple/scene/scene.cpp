@@ -161,9 +161,6 @@ const DetectResult& Scene::result() const {
 std::shared_ptr<const void> Scene::keep_result() {
   return implementation_->keep_result();
 }
-VerifyReport Scene::verify(const CallLimits& limits) const {
-  return implementation_->verify(limits);
-}
 
 std::vector<ObjectId> Scene::objects() const {
   return implementation_->world.objects();

@@ -7,11 +7,9 @@
 
 #include "answers/detection.hpp"
 #include "answers/impact/step_search.hpp"
-#include "inspect/inspection.hpp"
 #include "queries/queries.hpp"
 #include "scene/events.hpp"
 #include "supple/scene.hpp"
-#include "verify/verify_queries.hpp"
 #include "world/world.hpp"
 
 namespace supple {
@@ -28,14 +26,11 @@ class Scene::Implementation {
   ImpactSearchOptions impact_options() const;
   /// Whether the objects are as in the last `detect` that succeeded.
   bool is_current() const { return detected_at_ == world.changes(); }
-  Inspection inspection() const { return {world, detection, result, is_current()}; }
-  VerifyReport verify(const CallLimits& limits) const;
 
   World world;
   Detection detection{world};
   StepSearch step_search{world};
   Queries queries{world};
-  QueryVerifier query_verifier{world};
   DetectResult result;
   DetectObserver observer;
 
@@ -49,6 +44,12 @@ class Scene::Implementation {
   DetectResult found_by_search_;
   std::uint64_t step_ = 0;
   std::uint64_t detected_at_ = 0;  // `World::changes` at the last `detect` that succeeded
+};
+
+/// Opens scenes for the libraries that verify and inspect them.
+class SceneAccess {
+ public:
+  static const Scene::Implementation& of(const Scene& scene) { return *scene.implementation_; }
 };
 
 }  // namespace supple

@@ -13,6 +13,7 @@
 
 #include "supple/continuous.hpp"
 #include "supple/mesh.hpp"
+#include "supple/mesh_file.hpp"
 #include "support/shared_meshes.hpp"
 
 namespace supple::contact_truth_test {

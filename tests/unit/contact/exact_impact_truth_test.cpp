@@ -14,6 +14,7 @@
 
 #include "contact/impact/exact_impact.hpp"
 #include "supple/mesh.hpp"
+#include "supple/mesh_file.hpp"
 #include "support/shared_meshes.hpp"
 
 namespace supple::exact_impact_truth_test {

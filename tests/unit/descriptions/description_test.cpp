@@ -10,6 +10,7 @@
 
 #include "members.hpp"
 #include "other_values.hpp"
+#include "supple/difference_descriptions.hpp"
 #include "supple/error.hpp"
 
 namespace supple::description_test {

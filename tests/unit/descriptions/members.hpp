@@ -2,6 +2,7 @@
 
 #include <tuple>
 
+#include "supple/inspection_descriptions.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/simulation_descriptions.hpp"

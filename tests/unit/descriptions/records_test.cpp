@@ -11,6 +11,7 @@
 #include "supple/difference_descriptions.hpp"
 #include "supple/query_descriptions.hpp"
 #include "supple/result_lists.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::records_test {
 

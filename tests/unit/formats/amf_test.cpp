@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "supple/formats.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::amf_test {
 

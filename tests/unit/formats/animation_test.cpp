@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "supple/point_cache.hpp"
+#include "unit/files/mesh_files.hpp"
 #include "unit/formats/gltf_builder.hpp"
-#include "unit/mesh/mesh_files.hpp"
 
 namespace supple::animation_test {
 

@@ -5,7 +5,7 @@
 
 #include "assimp/collada_text.hpp"
 #include "supple/formats.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::collada_test {
 

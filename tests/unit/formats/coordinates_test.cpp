@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/files/byte_order.hpp"
+#include "files/byte_order.hpp"
 #include "supple/formats.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::coordinates_test {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::element_mesh_test {
 

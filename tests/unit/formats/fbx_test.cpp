@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "supple/animation.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 // The reader has a ufbx inside. These tests compare with another one, which they link as a program could.
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "supple/formats.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::file_kinds_test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/files/byte_order.hpp"
+#include "files/byte_order.hpp"
 
 namespace supple {
 

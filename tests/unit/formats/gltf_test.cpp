@@ -10,8 +10,8 @@
 
 #include "supple/formats.hpp"
 #include "support/random.hpp"
+#include "unit/files/mesh_files.hpp"
 #include "unit/formats/gltf_builder.hpp"
-#include "unit/mesh/mesh_files.hpp"
 
 namespace supple::gltf_test {
 

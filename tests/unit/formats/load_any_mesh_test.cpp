@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "mesh/files/byte_order.hpp"
+#include "files/byte_order.hpp"
 #include "supple/formats.hpp"
+#include "supple/mesh_file.hpp"
+#include "unit/files/mesh_files.hpp"
 #include "unit/formats/gltf_builder.hpp"
-#include "unit/mesh/mesh_files.hpp"
 
 namespace supple::load_any_mesh_test {
 

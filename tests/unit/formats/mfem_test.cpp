@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "supple/formats.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::mfem_test {
 

@@ -6,7 +6,7 @@
 
 #include "readers.hpp"
 #include "supple/formats.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::volume_errors_test {
 

@@ -9,7 +9,7 @@
 
 #include "readers.hpp"
 #include "support/volume_files.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::volume_formats_test {
 

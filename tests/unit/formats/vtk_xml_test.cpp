@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "mesh/files/byte_order.hpp"
+#include "files/byte_order.hpp"
 #include "supple/formats.hpp"
+#include "unit/files/mesh_files.hpp"
 #include "unit/formats/gltf_builder.hpp"
-#include "unit/mesh/mesh_files.hpp"
 
 namespace supple::vtk_xml_test {
 

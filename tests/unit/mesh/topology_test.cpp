@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "support/random.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple::topology_test {
 

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "octree/self_collision_culling.hpp"
+#include "supple/mesh_file.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/moving_objects.hpp"
 #include "support/shared_meshes.hpp"

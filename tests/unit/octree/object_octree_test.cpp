@@ -1,4 +1,5 @@
 #include "octree/object_octree.hpp"
+#include "inspect/octree_statistics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +72,7 @@ TEST(ObjectOctree, StaysValidOverSizesAndOptions) {
           Built built(soup, {.max_level = max_level, .leaf_size = leaf_size, .arity = arity, .build = build},
                       volume);
           EXPECT_EQ(built.refit(soup), "") << count << ' ' << leaf_size << ' ' << max_level << ' ' << arity;
-          const OctreeStatistics statistics = built.octree.statistics();
+          const OctreeStatistics statistics = octree_statistics(built.octree);
           EXPECT_LE(statistics.depth, max_level * 3 / (arity == 8 ? 3 : arity == 4 ? 2 : 1));
           EXPECT_LE(statistics.mean_node_width, arity);
           if (max_level == 16) {
@@ -88,15 +89,15 @@ TEST(ObjectOctree, TreesOfAnyArityEndInTheSameCells) {
   const Soup soup = scattered_soup(3000, 1, {}, 12);
   Built eight(soup, {.leaf_size = 1, .build = ObjectOctreeBuild::regular});
   EXPECT_EQ(eight.refit(soup), "");
-  std::uint32_t last_depth = eight.octree.statistics().depth;
-  std::uint64_t last_nodes = eight.octree.statistics().nodes;
+  std::uint32_t last_depth = octree_statistics(eight.octree).depth;
+  std::uint64_t last_nodes = octree_statistics(eight.octree).nodes;
   for (const std::uint32_t arity : {4u, 2u}) {
     Built other(soup, {.leaf_size = 1, .arity = arity, .build = ObjectOctreeBuild::regular});
     EXPECT_EQ(other.refit(soup), "");
     const auto ids = other.octree.triangle_ids(), expected = eight.octree.triangle_ids();
     EXPECT_TRUE(std::equal(ids.begin(), ids.end(), expected.begin(), expected.end()));
     EXPECT_EQ(other.octree.box(), eight.octree.box());
-    const OctreeStatistics statistics = other.octree.statistics();
+    const OctreeStatistics statistics = octree_statistics(other.octree);
     EXPECT_EQ(statistics.leaves, 3000u);
     EXPECT_GT(statistics.depth, last_depth);
     EXPECT_GT(statistics.nodes, last_nodes);
@@ -122,8 +123,8 @@ TEST(ObjectOctree, LevelsOfAnyArityAreCountedInEights) {
   for (const std::uint32_t arity : {2u, 4u, 8u}) {
     Built built(soup, {.max_level = 2, .leaf_size = 1, .arity = arity, .build = ObjectOctreeBuild::regular});
     EXPECT_EQ(built.refit(soup), "");
-    EXPECT_EQ(built.octree.statistics().leaves, 64u) << arity;
-    EXPECT_EQ(built.octree.statistics().depth, arity == 8 ? 2u : arity == 4 ? 3u : 6u);
+    EXPECT_EQ(octree_statistics(built.octree).leaves, 64u) << arity;
+    EXPECT_EQ(octree_statistics(built.octree).depth, arity == 8 ? 2u : arity == 4 ? 3u : 6u);
   }
 }
 
@@ -164,11 +165,11 @@ TEST(ObjectOctree, EqualCentresEndInOneLeafOfARegularTree) {
   }
   Built built(soup, {.build = ObjectOctreeBuild::regular});
   EXPECT_EQ(built.refit(soup), "");
-  EXPECT_EQ(built.octree.statistics().largest_leaf, 100u);
-  EXPECT_EQ(built.octree.statistics().depth, 0u);
+  EXPECT_EQ(octree_statistics(built.octree).largest_leaf, 100u);
+  EXPECT_EQ(octree_statistics(built.octree).depth, 0u);
   Built balanced(soup);
   EXPECT_EQ(balanced.refit(soup), "");
-  EXPECT_EQ(balanced.octree.statistics().leaves, 3u);
+  EXPECT_EQ(octree_statistics(balanced.octree).leaves, 3u);
 }
 
 TEST(ObjectOctree, AFarVertexDoesNotFlattenTheRest) {
@@ -180,8 +181,9 @@ TEST(ObjectOctree, AFarVertexDoesNotFlattenTheRest) {
         soup.positions[vertex] = {far, -far, far};
         Built built(soup, {.build = build});
         EXPECT_EQ(built.refit(soup), "") << far;
-        EXPECT_LE(built.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size) << far;
-        EXPECT_LT(built.octree.statistics().depth, build == ObjectOctreeBuild::regular ? 12u : 4u) << far;
+        EXPECT_LE(octree_statistics(built.octree).largest_leaf, ObjectOctreeOptions{}.leaf_size) << far;
+        EXPECT_LT(octree_statistics(built.octree).depth, build == ObjectOctreeBuild::regular ? 12u : 4u)
+            << far;
       }
     }
   }

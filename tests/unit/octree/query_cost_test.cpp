@@ -1,4 +1,5 @@
 #include "octree/build/query_cost.hpp"
+#include "inspect/octree_statistics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -137,10 +138,10 @@ TEST(QueryCost, IsHighForAnObjectBuiltWhileItWasAPoint) {
        {ObjectOctreeBuild::balanced, ObjectOctreeBuild::regular, ObjectOctreeBuild::bottom_up}) {
     Tree tree(mesh, build);
     // A regular octree cannot divide equal points; the other octrees always divide them.
-    ASSERT_EQ(tree.octree.statistics().largest_leaf == 1000, build == ObjectOctreeBuild::regular);
+    ASSERT_EQ(octree_statistics(tree.octree).largest_leaf == 1000, build == ObjectOctreeBuild::regular);
     Tree rebuilt = tree.rebuilt(spread);
     EXPECT_LT(rebuilt.cost(spread), tree.cost(spread) / 2);
-    EXPECT_LE(rebuilt.octree.statistics().largest_leaf, ObjectOctreeOptions{}.leaf_size);
+    EXPECT_LE(octree_statistics(rebuilt.octree).largest_leaf, ObjectOctreeOptions{}.leaf_size);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "inspect/octree_statistics.hpp"
 #include "octree/object_octree.hpp"
 #include "octree/surface_elements.hpp"
 #include "support/soups.hpp"
@@ -107,7 +108,7 @@ TEST(Rebuild, OfAnyTreeIsValid) {
         tree.place(deformed(mesh.positions, way, random));
         tree.rebuild();
         tree.expect_valid();
-        const OctreeStatistics statistics = tree.octree.statistics();
+        const OctreeStatistics statistics = octree_statistics(tree.octree);
         EXPECT_LE(statistics.depth, options.max_level * 3 / (arity == 8 ? 3 : arity == 4 ? 2 : 1));
         if (HasFailure()) return;
       }
@@ -129,7 +130,8 @@ TEST(Rebuild, GivesTheTreeBuiltFromThePositions) {
     ASSERT_EQ(tree.octree.nodes().size(), fresh.octree.nodes().size());
     EXPECT_TRUE(std::equal(tree.octree.triangle_ids().begin(), tree.octree.triangle_ids().end(),
                            fresh.octree.triangle_ids().begin()));
-    EXPECT_EQ(tree.octree.statistics().leaves_by_level, fresh.octree.statistics().leaves_by_level);
+    EXPECT_EQ(octree_statistics(tree.octree).leaves_by_level,
+              octree_statistics(fresh.octree).leaves_by_level);
   }
 }
 

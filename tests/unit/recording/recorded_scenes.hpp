@@ -13,7 +13,7 @@
 #include "supple/result_lists.hpp"
 #include "supple/scene.hpp"
 #include "support/soups.hpp"
-#include "unit/mesh/mesh_files.hpp"
+#include "unit/files/mesh_files.hpp"
 
 namespace supple {
 

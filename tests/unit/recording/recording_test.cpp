@@ -1,4 +1,5 @@
 #include "supple/recording.hpp"
+#include "supple/mesh_file.hpp"
 
 #include <gtest/gtest.h>
 

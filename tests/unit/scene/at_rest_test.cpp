@@ -7,6 +7,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/option_word.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
@@ -86,7 +87,7 @@ TEST_P(AtRest, ContactsAreThoseOfASceneWithoutAPast) {
     expect_as_new(world, world.scene.detect(), options);
     EXPECT_EQ(SceneInspector(world.scene).validate(), "");
   }
-  EXPECT_TRUE(world.scene.verify().agrees());
+  EXPECT_TRUE(verify(world.scene).agrees());
 }
 
 TEST(AtRestScene, WhatWasDoneIsNotDoneAgain) {
@@ -119,7 +120,7 @@ TEST(AtRestScene, AnotherObjectInTheSamePlaceIsAnother) {
   world.ids[7] = world.scene.add(world.positions_of(0), world.mesh.triangles);
   ASSERT_EQ(world.ids[7].index, 7u);
   world.scene.detect();
-  EXPECT_TRUE(world.scene.verify().agrees());
+  EXPECT_TRUE(verify(world.scene).agrees());
 }
 
 TEST(AtRestScene, AStepThatWasLeftByAnExceptionLeavesNothingBehind) {

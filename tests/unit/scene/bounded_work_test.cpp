@@ -17,6 +17,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "supple/trigonometry.hpp"
+#include "supple/verify.hpp"
 #include "world/object/world_object.hpp"
 
 namespace supple::bounded_work_test {
@@ -350,19 +351,19 @@ TEST(FarObjects, HaveExactAnswers) {
         Scene scene;
         const ObjectId a = scene.add(moved(ball, common)),
                        b = scene.add(moved(box, common + ratio * direction + Vec3d{0.125, 0, 0.25}));
-        for (const auto& wrong : scene.verify_distance(a, b, scene.distance(a, b)))
+        for (const auto& wrong : verify_distance(scene, a, b, scene.distance(a, b)))
           ADD_FAILURE() << ratio << ": found " << wrong.found << ", expected " << wrong.expected;
         const std::vector<Vec3d> points{common, common + ratio * direction, common - 0.5 * ratio * direction};
         std::vector<std::optional<ClosestPoint>> nearest(points.size());
         scene.closest(points, nearest);
-        for (const auto& wrong : scene.verify_closest(points, nearest))
+        for (const auto& wrong : verify_closest(scene, points, nearest))
           ADD_FAILURE() << ratio << ": found " << wrong.found << ", expected " << wrong.expected;
         const std::vector<Ray> rays{{common + ratio * direction, -direction},
                                     {common, ratio * direction},
                                     {common - ratio * direction, direction}};
         std::vector<std::optional<RayHit>> hits(rays.size());
         scene.cast(rays, hits);
-        for (const auto& wrong : scene.verify_cast(rays, hits))
+        for (const auto& wrong : verify_cast(scene, rays, hits))
           ADD_FAILURE() << ratio << ": found " << wrong.found << ", expected " << wrong.expected;
       }
     }
@@ -374,7 +375,7 @@ TEST(FarObjects, PlacedByATransformHaveExactAnswers) {
     Scene scene;
     const ObjectId a = scene.add(make_box({1, 1, 1})), b = scene.add(make_box({1, 2, 1}));
     scene.translate(b, {ratio, 0.5 * ratio, 0.25});
-    for (const auto& wrong : scene.verify_distance(a, b, scene.distance(a, b)))
+    for (const auto& wrong : verify_distance(scene, a, b, scene.distance(a, b)))
       ADD_FAILURE() << ratio << ": found " << wrong.found << ", expected " << wrong.expected;
   }
 }
@@ -387,13 +388,13 @@ TEST(FarObjects, HaveAnInfiniteDistanceWhereNoDoubleHoldsIt) {
   const auto found = scene.distance(a, b);
   ASSERT_TRUE(found);
   EXPECT_TRUE(std::isinf(found->distance));
-  for (const auto& wrong : scene.verify_distance(a, b, found))
+  for (const auto& wrong : verify_distance(scene, a, b, found))
     ADD_FAILURE() << "found " << wrong.found << ", expected " << wrong.expected;
-  EXPECT_EQ(scene.verify_distance(a, b, {}).size(), 1u);
-  EXPECT_TRUE(scene.verify_distances(any_distance, scene.distances(any_distance)).empty());
+  EXPECT_EQ(verify_distance(scene, a, b, {}).size(), 1u);
+  EXPECT_TRUE(verify_distances(scene, any_distance, scene.distances(any_distance)).empty());
   EXPECT_EQ(scene.distances(any_distance).size(), 1u);
   EXPECT_TRUE(scene.distances(largest).empty());
-  EXPECT_TRUE(scene.verify_distances(largest, {}).empty());
+  EXPECT_TRUE(verify_distances(scene, largest, {}).empty());
 }
 
 }  // namespace supple::bounded_work_test

@@ -12,6 +12,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/trigonometry.hpp"
+#include "supple/verify.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/scenes.hpp"
@@ -72,7 +73,7 @@ std::vector<ContinuousContact> contacts_of(Scene& scene) {
 std::string faults(const Scene& scene) {
   const char* const names[] = {"missed", "added", "late", "early"};
   std::string text;
-  for (const ContinuousDifference& d : scene.verify().continuous_differences) {
+  for (const ContinuousDifference& d : verify(scene).continuous_differences) {
     text += std::string(names[static_cast<int>(d.fault)]) + " kind " + std::to_string(int(d.kind));
     for (const auto& element : {d.element_a, d.element_b}) {
       text += " {" + std::to_string(element[0]) + ' ' + std::to_string(element[1]) + '}';
@@ -217,7 +218,7 @@ TEST(ContinuousContacts, WhatExactArithmeticWouldDecideIsReportedWithoutIt) {
   const auto contacts = short_of_it.scene.detect().continuous_contacts;
   ASSERT_EQ(contacts.size(), 1u);
   EXPECT_EQ(contacts[0].certainty, ImpactCertainty::within_tolerance);
-  EXPECT_TRUE(short_of_it.scene.verify().agrees());
+  EXPECT_TRUE(verify(short_of_it.scene).agrees());
 }
 
 TEST(ContinuousContacts, OfAnObjectAtRestAreAtTheStart) {
@@ -354,7 +355,7 @@ TEST(ContinuousErrors, SayWhatToDo) {
   scene.set_static(id, true);
   EXPECT_NE(message_of([&] { scene.set_motion(id, Vertices(3), Vertices(3)); }).find("static"),
             std::string::npos);
-  EXPECT_NE(message_of([&] { scene.verify(); }).find("call detect first"), std::string::npos);
+  EXPECT_NE(message_of([&] { verify(scene); }).find("call detect first"), std::string::npos);
 }
 
 }  // namespace supple::continuous_test

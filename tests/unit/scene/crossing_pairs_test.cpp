@@ -13,6 +13,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/random.hpp"
 
 namespace supple::crossing_pairs_test {
@@ -52,7 +53,7 @@ TEST(CrossingPairs, OfANeedleThroughAPlate) {
           EXPECT_DOUBLE_EQ((needle_first ? pair.barycentric_a : pair.barycentric_b)[0], 0.6);
           EXPECT_EQ(scene.vertices_of(pair, ContactSide::a).size(), needle_first ? 2u : 3u);
         }
-        EXPECT_TRUE(scene.verify().agrees());
+        EXPECT_TRUE(verify(scene).agrees());
         EXPECT_EQ(scene.distance({0, 0}, {1, 0})->distance, 0);
         EXPECT_EQ(SceneInspector(scene).explain({0, 0}, 0, {1, 0}, 0).stage, PairStage::contact);
       }
@@ -66,7 +67,7 @@ TEST(CrossingPairs, NeedAllKindsOfElements) {
     scene.add(plate);
     scene.add(needle);
     EXPECT_EQ(scene.detect().proximity_pairs.size(), kinds == ElementKinds::all ? 2u : 0u);
-    EXPECT_TRUE(scene.verify().agrees());
+    EXPECT_TRUE(verify(scene).agrees());
   }
 }
 
@@ -81,18 +82,18 @@ TEST(CrossingPairs, OfARodThroughABall) {
     if (!rod_first) add_rod();
     EXPECT_EQ(crossings(scene.detect()), 2u);
     EXPECT_EQ(scene.result().proximity_pairs.size(), 2u);
-    EXPECT_TRUE(scene.verify().agrees());
+    EXPECT_TRUE(verify(scene).agrees());
     const auto distance = scene.distance({0, 0}, {1, 0});
     ASSERT_TRUE(distance);
     EXPECT_EQ(distance->distance, 0);
-    EXPECT_TRUE(scene.verify_distance({0, 0}, {1, 0}, distance).empty());
+    EXPECT_TRUE(verify_distance(scene, {0, 0}, {1, 0}, distance).empty());
     scene.translate(of_ball, {0, 0, 4});
     EXPECT_TRUE(scene.detect().proximity_pairs.empty());
     EXPECT_EQ(scene.result().proximity_events.end.size(), 1u);
     const auto apart = scene.distance({0, 0}, {1, 0});
     ASSERT_TRUE(apart);
     EXPECT_NEAR(apart->distance, 3, 0.05);
-    EXPECT_TRUE(scene.verify_distance({0, 0}, {1, 0}, apart).empty());
+    EXPECT_TRUE(verify_distance(scene, {0, 0}, {1, 0}, apart).empty());
   }
 }
 
@@ -133,9 +134,9 @@ TEST(CrossingPairs, AndDistancesOfMixedObjectsAgreeWithBruteForce) {
       if (round % 7 == 0) scene.translate(id, size * random.vector(1e3));
     }
     found += crossings(scene.detect());
-    ASSERT_TRUE(scene.verify().agrees()) << round << ": " << scene.verify().proximity_differences.size();
+    ASSERT_TRUE(verify(scene).agrees()) << round << ": " << verify(scene).proximity_differences.size();
     const auto distance = scene.distance({0, 0}, {1, 0});
-    const auto wrong = scene.verify_distance({0, 0}, {1, 0}, distance);
+    const auto wrong = verify_distance(scene, {0, 0}, {1, 0}, distance);
     EXPECT_TRUE(wrong.empty()) << round << ": " << wrong[0].found << " instead of " << wrong[0].expected;
     EXPECT_EQ(SceneInspector(scene).validate(), "");
   }
@@ -155,7 +156,7 @@ TEST(CrossingPairs, OfAnObjectThroughItself) {
   EXPECT_EQ(pair.kind_b, face);
   EXPECT_EQ(pair.element_a, (std::array{3u, 4u}));
   EXPECT_EQ(pair.element_b, (std::array{0u, 0u}));
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   mesh.positions[3].z = 1;
   scene.set_positions(object, mesh.positions);
   EXPECT_TRUE(scene.detect().proximity_pairs.empty());

@@ -15,6 +15,7 @@
 #include "supple/scene.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "supple/trigonometry.hpp"
+#include "supple/verify.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 #include "verify/algebra/distance_algebra.hpp"
@@ -212,7 +213,7 @@ TEST(Distance, DependsOnNoHistoryAndOnNoOctree) {
         const auto found = scene.distance(ids[0], ids[1]);
         if (leaf_size == 1) {
           first = found;
-          EXPECT_TRUE(scene.verify_distance(ids[0], ids[1], found).empty());
+          EXPECT_TRUE(verify_distance(scene, ids[0], ids[1], found).empty());
         }
         EXPECT_EQ(found, first) << leaf_size;
         EXPECT_EQ(scene.distance(ids[0], ids[1]), first) << leaf_size;

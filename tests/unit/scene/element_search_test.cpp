@@ -14,6 +14,7 @@
 
 #include "supple/error.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/golden_scenes.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
@@ -55,7 +56,7 @@ double separation_of(const Family& family) {
 }
 
 void expect_agreement(const Scene& scene) {
-  const VerifyReport report = scene.verify();
+  const VerifyReport report = verify(scene);
   EXPECT_TRUE(report.agrees()) << report.difference_count() << " differences";
 }
 

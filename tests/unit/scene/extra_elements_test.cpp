@@ -10,6 +10,7 @@
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 
@@ -63,7 +64,7 @@ TEST(ExtraElements, AgreeWithBruteForce) {
     }
     const DetectResult& result = scene.detect();
     EXPECT_GT(result.proximity_pairs.size(), 0u);
-    const VerifyReport report = scene.verify();
+    const VerifyReport report = verify(scene);
     EXPECT_TRUE(report.agrees()) << "round " << round << ": " << report.continuous_differences.size() << ", "
                                  << report.proximity_differences.size() << " differences";
     EXPECT_EQ(SceneInspector(scene).validate(), "");
@@ -84,7 +85,7 @@ TEST(ExtraElements, AreNoTriangles) {
   EXPECT_EQ(scene.triangle_count(with), 1u);
   EXPECT_EQ(scene.triangle_count(rod_only), 0u);
   EXPECT_TRUE(scene.detect().contacts.empty());
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   std::array<std::optional<ClosestPoint>, 1> closest;
   scene.closest(std::array{Vec3d{0.2, 0.2, 0.9}}, closest);
   ASSERT_TRUE(closest[0]);
@@ -162,7 +163,7 @@ TEST(ExtraElements, OfAMesh) {
   ASSERT_EQ(pairs.size(), 2u);
   EXPECT_EQ(pairs[0].element_a, (std::array{0u, 1u}));
   EXPECT_EQ(pairs[1].element_a, (std::array{2u, 3u}));
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   mesh.edges = {{0, 9}};
   EXPECT_THROW(scene.add(mesh), Error);
 }

@@ -15,6 +15,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
@@ -68,7 +69,7 @@ class LazyAndFull {
     const DetectResult &full = full_.detect(), &lazily = lazy_.detect();
     EXPECT_EQ(hash_of(lazily), hash_of(full)) << what;
     if (checks_++ % 5 == 0) {
-      EXPECT_TRUE(lazy_.verify().agrees()) << what;
+      EXPECT_TRUE(verify(lazy_).agrees()) << what;
     }
     EXPECT_LE(lazily.stats.node_pairs_visited, full.stats.node_pairs_visited) << what;
     read_ += lazily.stats.triangles_refitted;
@@ -206,7 +207,7 @@ TEST(LazyRefit, TakesBoundsThatTheMotionFound) {
     }
     EXPECT_EQ(hash_of(given.detect()), hash_of(plain.detect()));
     EXPECT_FALSE(given.result().contacts.empty());
-    EXPECT_TRUE(given.verify().agrees());
+    EXPECT_TRUE(verify(given).agrees());
     constexpr double inf = std::numeric_limits<double>::infinity();
     EXPECT_THROW(given.set_positions(a, ball.positions, {Vec3d{-inf, 0, 0}, Vec3d{1, 1, 1}}), Error);
   }

@@ -12,6 +12,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/random.hpp"
 #include "support/soups.hpp"
 
@@ -29,7 +30,7 @@ bool meet(const std::vector<Vec3d>& positions, const Triangle& a, const Triangle
   Scene scene;
   scene.add(positions, std::vector<Triangle>{a, b}, exact_neighbours);
   const bool found = !scene.detect().contacts.empty();
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   return found;
 }
 
@@ -80,7 +81,7 @@ TEST(Neighbours, AgreeWithRationals) {
       options.octree.leaf_size = 2;
       scene.add(mesh, options);
       found += scene.detect().contacts.size();
-      const VerifyReport report = scene.verify();
+      const VerifyReport report = verify(scene);
       EXPECT_TRUE(report.agrees()) << "round " << round << ": " << report.differences.size()
                                    << " differences";
     }
@@ -105,7 +106,7 @@ TEST(Neighbours, AreTheOnlyAdditions) {
   EXPECT_GT(all.size(), apart.size());
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
   EXPECT_TRUE(std::includes(all.begin(), all.end(), apart.begin(), apart.end()));
-  EXPECT_TRUE(with.verify().agrees());
+  EXPECT_TRUE(verify(with).agrees());
   DetectRequest request;
   request.max_contacts = all.size() / 2;
   const auto first = pairs_of(with.detect(request));
@@ -114,7 +115,7 @@ TEST(Neighbours, AreTheOnlyAdditions) {
   moved[5].x = std::numeric_limits<double>::quiet_NaN();
   with.set_positions(id, moved);
   with.detect();
-  EXPECT_TRUE(with.verify().agrees());
+  EXPECT_TRUE(verify(with).agrees());
   with.set_positions(id, mesh.positions);
   EXPECT_EQ(pairs_of(with.detect()), all);
 }

@@ -12,6 +12,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::orientation_test {
 
@@ -50,7 +51,7 @@ void expect_depth(const Scene& scene, double depth, const Vec3d& normal) {
   const IntersectionCurve& curve = scene.result().curves[0];
   EXPECT_NEAR(curve.depth, depth, 1e-12);
   EXPECT_NEAR(norm(curve.normal - normal), 0, 1e-12);
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
 }
 
 /// A crate that is 1/16 in the floor, whose middle is below the crate.
@@ -127,7 +128,7 @@ TEST(Orientation, FollowsThePositions) {
   for (Vec3d& p : flat) p.x = 0;
   scene.set_positions(a, flat);
   scene.detect();
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   scene.set_positions(a, mirrored);
   scene.detect();
   expect_depth(scene, 0.0625, {0, 1, 0});

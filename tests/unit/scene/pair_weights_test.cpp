@@ -12,6 +12,7 @@
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/random.hpp"
 
 namespace supple::pair_weights_test {
@@ -140,7 +141,7 @@ TEST(UserData, StaysWithItsObject) {
   scene.detect();
   scene.set_user_data(b, 7);
   EXPECT_EQ(scene.user_data(b), 7u);
-  EXPECT_TRUE(scene.verify().agrees()) << "the data is no change of the scene";
+  EXPECT_TRUE(verify(scene).agrees()) << "the data is no change of the scene";
   scene.remove(a);
   EXPECT_THROW(scene.user_data(a), Error);
   EXPECT_EQ(scene.user_data(scene.add(ball)), 0u);

@@ -16,6 +16,7 @@
 #include "supple/scene.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "supple/trigonometry.hpp"
+#include "supple/verify.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 
@@ -84,8 +85,8 @@ TEST(Penetration, HasDepthAndTheWayOut) {
   EXPECT_FALSE(result.contacts.empty());
   EXPECT_TRUE(result.contained_parts.empty());
   EXPECT_EQ(result.stats.penetrations, 1u);
-  EXPECT_TRUE(scene.verify().agrees());
-  EXPECT_EQ(scene.verify().inside_vertices, 1u);
+  EXPECT_TRUE(verify(scene).agrees());
+  EXPECT_EQ(verify(scene).inside_vertices, 1u);
 }
 
 TEST(Penetration, VerticesOnTheSurfaceAreToldApart) {
@@ -98,7 +99,7 @@ TEST(Penetration, VerticesOnTheSurfaceAreToldApart) {
             (std::vector<std::uint32_t>{0}));
   EXPECT_EQ(vertices_of(result.penetrations), (std::vector<std::uint32_t>{3}));
   EXPECT_EQ(result.penetration_groups[0].b, b);
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
 }
 
 TEST(Penetration, OnlySolidObjectsAreEntered) {
@@ -137,7 +138,7 @@ TEST(Penetration, KnowsContainedPartsAndWholeObjects) {
   EXPECT_EQ(result.contained_parts[0], (ContainedPart{inner, outer, 0, count, true}));
   EXPECT_EQ(result.contained_parts[1], (ContainedPart{inner, outer, count, count, true}));
   EXPECT_EQ(result.penetrations.size(), 2u * count);
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   // One part leaves; it touches the surface on its way.
   for (const double x : {-2.0, -3.0}) {
     scene.set_positions(
@@ -146,7 +147,7 @@ TEST(Penetration, KnowsContainedPartsAndWholeObjects) {
     ASSERT_EQ(result.contained_parts.size(), 1u);
     EXPECT_EQ(result.contained_parts[0], (ContainedPart{inner, outer, 0, count, false}));
     EXPECT_EQ(result.penetrations.size() > count, x > -3);
-    EXPECT_TRUE(scene.verify().agrees());
+    EXPECT_TRUE(verify(scene).agrees());
   }
 }
 
@@ -191,14 +192,14 @@ TEST(Penetration, VerticesThatAreNotFiniteAreInert) {
   const DetectResult& result = scene.detect();
   EXPECT_EQ(result.penetrations.size(), ball.positions.size() - 1);
   EXPECT_EQ(result.contained_parts.size(), 1u);
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   // A solid with a hole contains nothing.
   std::vector<Vec3d> positions = moved_mesh(ball, {}, 3).positions;
   positions[7].x = nan;
   scene.set_positions(outer, positions);
   scene.set_positions(inner, ball.positions);
   EXPECT_TRUE(scene.detect().penetrations.empty());
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
 }
 
 TEST(Curves, OfABallThatDipsIntoACloth) {
@@ -428,7 +429,7 @@ TEST_P(HardSolids, AgreeWithBruteForceAndWithQueries) {
       scene.add(meshes.back(), {.solid = true, .octree = {.leaf_size = 1 + random.below(8)}});
     }
     const DetectResult& result = scene.detect();
-    const VerifyReport report = scene.verify();
+    const VerifyReport report = verify(scene);
     EXPECT_TRUE(report.agrees()) << report.difference_count();
     inside += result.penetrations.size();
     on_surface += result.vertices_on_surface.size();
@@ -651,7 +652,7 @@ TEST(Penetration, OfASolidWithAHoleKnowsItsSurface) {
       const DetectResult& result = scene.detect();
       EXPECT_TRUE(result.penetrations.empty());
       EXPECT_EQ(list_of(result.vertices_on_surface), on_surface);
-      EXPECT_TRUE(scene.verify().agrees());
+      EXPECT_TRUE(verify(scene).agrees());
       return on_surface.size();
     };
     EXPECT_EQ(compare(), 6u);

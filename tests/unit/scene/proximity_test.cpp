@@ -9,6 +9,7 @@
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/golden_scenes.hpp"
 #include "support/random.hpp"
 
@@ -32,7 +33,7 @@ TEST_P(Proximity, EqualsExactBruteForce) {
     Scene scene =
         near_scene_of(GetParam().make(1), {.contacts = proximity, .proximity_listing = listing}, triangles);
     scene.detect();
-    const VerifyReport report = scene.verify();
+    const VerifyReport report = verify(scene);
     EXPECT_TRUE(report.agrees()) << report.proximity_differences.size() << " differences";
     EXPECT_EQ(report.near_pairs, scene.result().proximity_pairs.size());
     EXPECT_GT(report.near_pairs, 0u);
@@ -79,7 +80,7 @@ TEST(ProximityPairs, OfALatticeWithMarginsThatAreAttained) {
           scene.add(mesh, {.self_collision = true, .margin = scale * reach / 2, .octree = {.leaf_size = 2}});
         }
         scene.detect();
-        EXPECT_TRUE(scene.verify().agrees()) << scale << ' ' << reach;
+        EXPECT_TRUE(verify(scene).agrees()) << scale << ' ' << reach;
         EXPECT_GT(scene.result().proximity_pairs.size(), 0u);
       }
     }
@@ -188,9 +189,9 @@ TEST(ProximityPairs, OfObjectsThatDidNotMoveAreKept) {
   const ObjectId moved = scene.objects().back();
   scene.translate(moved, {1e-3, 0, 0});
   scene.detect();
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   scene.detect({.proximity_listing = ProximityListing::elements});
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
 }
 
 TEST(ProximityPairs, AreTheFirstOfALimit) {
@@ -213,7 +214,7 @@ TEST(ProximityPairs, LeaveOutElementsThatAreNotFinite) {
   scene.add(sheet, {.margin = 0.5});
   EXPECT_EQ(scene.detect().non_finite_vertices.size(), 1u);
   EXPECT_FALSE(scene.result().proximity_pairs.empty());
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
 }
 
 TEST(ProximityPairs, RefuseMarginsOutOfRange) {

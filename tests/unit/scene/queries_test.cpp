@@ -13,6 +13,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/golden_scenes.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
@@ -488,7 +489,7 @@ TEST(QueriesOfAScene, DoNotDisturbDetection) {
     const auto contacts = found.contacts.size();
     inside_of(asked, {random.vector(1)});
     ASSERT_EQ(asked.result().contacts.size(), contacts);
-    ASSERT_TRUE(asked.verify().agrees());
+    ASSERT_TRUE(verify(asked).agrees());
     ASSERT_EQ(SceneInspector(asked).validate(), "");
   }
 }

@@ -8,6 +8,7 @@
 
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::query_limits_test {
 
@@ -61,9 +62,9 @@ TEST(StoppedQuery, OfVerifySaysSo) {
   Objects objects;
   std::stop_source source;
   objects.scene.detect();
-  EXPECT_FALSE(objects.scene.verify({source.get_token()}).stopped);
+  EXPECT_FALSE(verify(objects.scene, {source.get_token()}).stopped);
   source.request_stop();
-  const VerifyReport report = objects.scene.verify({source.get_token()});
+  const VerifyReport report = verify(objects.scene, {source.get_token()});
   EXPECT_TRUE(report.stopped);
   EXPECT_EQ(report.triangle_pairs_checked, 0u);
 }

@@ -15,6 +15,7 @@
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
+#include "supple/verify.hpp"
 #include "support/hard_scenes.hpp"
 #include "support/scenes.hpp"
 
@@ -152,7 +153,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
         const Lists found(result);
         expect_equal_contacts(found, contacts);
         ASSERT_EQ(found.continuous, impacts.continuous) << step;
-        ASSERT_TRUE(is_slow_to_verify || two.verify().agrees()) << step;
+        ASSERT_TRUE(is_slow_to_verify || verify(two).agrees()) << step;
         // Requests both kinds of contacts, in an order that alternates between steps.
         for (const int turn : {step, step + 1}) {
           const bool is_continuous = turn % 2 == 0;
@@ -166,7 +167,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
             expect_equal_contacts(Lists(answer), contacts);
             ASSERT_TRUE(answer.continuous_contacts.empty() && answer.continuous_groups.empty());
           }
-          ASSERT_TRUE((is_slow_to_verify && is_continuous) || one.verify().agrees()) << step;
+          ASSERT_TRUE((is_slow_to_verify && is_continuous) || verify(one).agrees()) << step;
           ASSERT_EQ(SceneInspector(one).validate(), "") << step;
         }
         if (HasFatalFailure()) return;
@@ -187,7 +188,7 @@ TEST_P(OneScene, TheEarliestImpactLeavesTheResultAsItWas) {
     EXPECT_EQ(scene.earliest_impact(), moving.earliest_impact());
     EXPECT_EQ(hash_of(scene.result()), before);
     EXPECT_EQ(scene.result().step, number);
-    EXPECT_TRUE(scene.verify().agrees());
+    EXPECT_TRUE(verify(scene).agrees());
     EXPECT_NO_THROW(SceneInspector(scene).candidates(10));
     EXPECT_EQ(SceneInspector(scene).validate(), "");
   }
@@ -217,7 +218,7 @@ TEST_P(OneScene, ListsTheFirstContacts) {
       expect_equal_contacts(found, expected);
       ASSERT_EQ(found.continuous, expected.continuous);
       if (result.truncated) {
-        EXPECT_THROW(scene.verify(), Error);
+        EXPECT_THROW(verify(scene), Error);
       }
       // The next step does not treat omitted contacts as known.
       const Lists again(scene.detect());
@@ -318,7 +319,7 @@ TEST(Stop, BeforeAnythingIsFoundLeavesTheSceneAsItWas) {
   EXPECT_TRUE(stopped.object_pairs.empty() && stopped.groups.empty() && stopped.contacts.empty() &&
               stopped.continuous_groups.empty() && stopped.continuous_contacts.empty() &&
               stopped.volume_events.begin.empty() && stopped.contact_events.end.empty());
-  EXPECT_THROW(scene.verify(), Error);
+  EXPECT_THROW(verify(scene), Error);
   EXPECT_EQ(SceneInspector(scene).validate(), "");
   const DetectResult& result = scene.detect();
   EXPECT_FALSE(result.stopped);
@@ -360,7 +361,7 @@ TEST(Stop, InThePairFilterEndsTheStepOfEveryKind) {
     EXPECT_EQ(hash_of(result), hash_of(expected));
     EXPECT_EQ(result.proximity_pairs.size(), expected.proximity_pairs.size());
     EXPECT_EQ(result.penetrations.size(), expected.penetrations.size());
-    EXPECT_TRUE(scene.verify().agrees());
+    EXPECT_TRUE(verify(scene).agrees());
   }
 }
 
@@ -453,7 +454,7 @@ TEST(Translation, GivesTheContinuousContactsOfTheSamePositions) {
         const Lists lists(moved.result()), expected(given.detect());
         expect_equal_contacts(lists, expected);
         ASSERT_EQ(lists.continuous, expected.continuous) << step;
-        ASSERT_TRUE(moved.verify().agrees()) << step;
+        ASSERT_TRUE(verify(moved).agrees()) << step;
         ASSERT_EQ(SceneInspector(moved).validate(), "") << step;
         found += lists.continuous.size();
       }
@@ -487,7 +488,7 @@ TEST(Known, ContinuousContactsAreThoseOfANewScene) {
     scene.set_motion(id, from, to);
     const Lists found(scene.detect());
     EXPECT_LT(scene.result().stats.node_pairs_visited, all);
-    EXPECT_TRUE(scene.verify().agrees());
+    EXPECT_TRUE(verify(scene).agrees());
     // A request with another separation does not reuse these contacts.
     scene.detect({.impact = ImpactOptions{.min_separation = 0.1}});
     EXPECT_GT(scene.result().continuous_contacts.size(), found.continuous.size());

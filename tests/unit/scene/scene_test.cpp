@@ -9,6 +9,7 @@
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
+#include "supple/verify.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
 
@@ -356,7 +357,7 @@ TEST(Scene, ErrorsSayWhatWhereAndHowToMend) {
             "translate: y of the offset is nan; it must be a finite number");
   EXPECT_EQ(error_of([&] { scene.position(a, 3); }),
             "position: sheet has no vertex 3; it has 3, numbered from 0");
-  EXPECT_EQ(error_of([&] { scene.verify(); }),
+  EXPECT_EQ(error_of([&] { verify(scene); }),
             "verify: nothing was detected at the present positions; call detect first");
   EXPECT_EQ(error_of([&] { scene.add(one_triangle(0), {.octree = {.leaf_size = 0}}); }),
             "ObjectOctreeOptions::leaf_size is 0; it must be a whole number from 1 to 4294967295");

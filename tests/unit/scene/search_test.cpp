@@ -8,6 +8,7 @@
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/random.hpp"
 
 namespace supple::search_test {
@@ -96,7 +97,7 @@ TEST(SceneSearch, DoesNotMakeAStep) {
     expect_equal_events(p.contact_events, q.contact_events);
     expect_equal_events(p.volume_events, q.volume_events);
   }
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
 }
 
 TEST(SceneSearch, TestsOnlyWhatTheFunctionAccepts) {

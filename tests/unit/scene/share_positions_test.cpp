@@ -16,6 +16,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/scenes.hpp"
 #include "support/soups.hpp"
@@ -95,7 +96,7 @@ TYPED_TEST(SharePositions, FindsWhatACopyFindsAndReadsNothingElse) {
           const ContactKeys found = keys_of(shared.detect());
           EXPECT_EQ(found, keys_of(copied.detect()));
           EXPECT_EQ(SceneInspector(shared).validate(), "");
-          EXPECT_TRUE(shared.verify().agrees());
+          EXPECT_TRUE(verify(shared).agrees());
           contacts += found.size();
         }
         EXPECT_GT(contacts, 100u);
@@ -151,11 +152,11 @@ TYPED_TEST(SharePositions, NonFiniteVerticesAreFoundWhenTheyAreRead) {
   ASSERT_EQ(result.non_finite_vertices.size(), 1u);
   EXPECT_EQ(result.non_finite_vertices[0].vertex, broken.size() - 1);
   EXPECT_FALSE(result.contacts.empty());
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
   points.set(ball.positions, {0.5, 0, 0});
   scene.share_positions(id, points.view());
   EXPECT_TRUE(scene.detect().non_finite_vertices.empty());
-  EXPECT_TRUE(scene.verify().agrees());
+  EXPECT_TRUE(verify(scene).agrees());
 }
 
 TYPED_TEST(SharePositions, AreReadForContinuousContactsToo) {
@@ -205,7 +206,7 @@ TYPED_TEST(SharePositions, CopiesWhatItCannotReadInPlace) {
     copied.set_positions(of_copied, view);
     EXPECT_EQ(keys_of(shared.detect()), keys_of(copied.detect()));
     EXPECT_FALSE(shared.result().contacts.empty());
-    EXPECT_TRUE(shared.verify().agrees());
+    EXPECT_TRUE(verify(shared).agrees());
   }
 }
 

@@ -10,6 +10,7 @@
 #include "supple/models.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::weld_test {
 
@@ -34,7 +35,7 @@ TEST(Weld, MakesTheSidesOfASeamNeighbours) {
   const ObjectId id = welded.add(pieces, {.self_collision = true, .weld = true, .margin = 1e-3});
   EXPECT_TRUE(welded.detect().contacts.empty());
   EXPECT_TRUE(welded.result().proximity_pairs.empty());
-  EXPECT_TRUE(welded.verify().agrees());
+  EXPECT_TRUE(verify(welded).agrees());
   // The first vertex of each place stands for all.
   welded.set_positions(id, pieces.positions);
   EXPECT_TRUE(welded.detect().contacts.empty());

@@ -9,6 +9,7 @@
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 #include "supple/simulation.hpp"
+#include "supple/verify.hpp"
 
 namespace supple::rigid_motion_test {
 
@@ -62,7 +63,7 @@ TEST(RigidMotion, TranslatesWithoutReadingTheVertices) {
     EXPECT_EQ(result.stats.triangles_refitted, 0u);
     contacts += result.contacts.size();
     if (step % 10 == 0) {
-      EXPECT_TRUE(simulation.scene().verify().agrees());
+      EXPECT_TRUE(verify(simulation.scene()).agrees());
     }
   }
   EXPECT_GT(contacts, 100u);
@@ -197,7 +198,7 @@ TEST(RigidMotion, HasTheSamePositionsWithContinuousContacts) {
       const DetectResult& result = simulation.step();
       found += result.contacts.size() + result.continuous_contacts.size();
       if (step % 25 == 0) {
-        EXPECT_TRUE(simulation.scene().verify().agrees());
+        EXPECT_TRUE(verify(simulation.scene()).agrees());
         simulation.detect();  // places the objects at rest; the next step starts there
       }
     }

@@ -8,6 +8,7 @@
 
 #include "supple/models.hpp"
 #include "supple/simulation.hpp"
+#include "supple/verify.hpp"
 #include "support/scenes.hpp"
 
 namespace supple::set_detection_test {
@@ -71,7 +72,7 @@ TEST(SetDetection, TheMotionGoesOnAndTheContactsAreThoseOfTheNewOptions) {
       contacts += changed.simulation.scene().result().contacts.size();
     }
     EXPECT_GT(contacts, 0u);
-    EXPECT_TRUE(changed.simulation.scene().verify().differences.empty());
+    EXPECT_TRUE(verify(changed.simulation.scene()).differences.empty());
   }
 }
 

@@ -14,6 +14,7 @@
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/trigonometry.hpp"
+#include "supple/verify.hpp"
 #include "support/scenes.hpp"
 
 namespace supple::simulation_test {
@@ -465,7 +466,7 @@ TEST(Simulation, ContinuousContactsSeeTheWholeWay) {
   std::set<ObjectPair> pairs;
   for (const ContinuousContact& c : passed.continuous_contacts) pairs.insert({c.object_a, c.object_b});
   EXPECT_EQ(pairs.size(), 3u);
-  EXPECT_TRUE(simulation.scene().verify().agrees());
+  EXPECT_TRUE(verify(simulation.scene()).agrees());
 
   // At the end positions the bodies touch nothing.
   EXPECT_TRUE(simulation.detect().continuous_contacts.empty());
@@ -509,7 +510,7 @@ TEST(Simulation, ObjectsComeAndGoBetweenSteps) {
   EXPECT_THROW(simulation.body(first), Error);
   for (int step = 0; step < 10; ++step) simulation.step();
   EXPECT_EQ(SceneInspector(simulation.scene()).validate(), "");
-  EXPECT_TRUE(simulation.scene().verify().agrees());
+  EXPECT_TRUE(verify(simulation.scene()).agrees());
 }
 
 TEST(Simulation, BodiesPutElsewhereKeepTheirVelocities) {

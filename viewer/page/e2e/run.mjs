@@ -33,6 +33,17 @@ const MAIN_PATH = [
   "page: views survive a reload", "live: a spectator sees the same and controls nothing",
 ];
 
+/** Take long, and other tests take most of their path. They run with --size, as `.ci/run all` does, and by name. */
+const LONG = [
+  "attach: a program has spectators", "narrow: axe has no serious findings", "capture: warnings stay until they hold no more",
+  "page: Space plays everywhere", "world: very large surfaces are flat", "capture: a body that blows up meanwhile",
+  "narrow: controls stay where they are while it plays", "world: creases are dark", "one_file: survives a body that blows up",
+  "narrow: everything is reached with a font of 200 %", "page: records a video", "capture: cancelling keeps what is there",
+  "crowd: one is picked, and its row comes into sight", "layers: another bounding volume shows", "live: plots hold every step",
+  "inside: the resting pointer shows the value of the field", "follow: buttons stay while values change", "follow: pins have each step",
+  "capture: frames of a page without a program", "history: the memory of the past is bounded", "capture: a program that ends meanwhile",
+];
+
 const USAGE = "usage: node e2e/run.mjs [--firefox] [--slow] [--size 1440|800|390] [--theme dark|light] PATH/TO/supple [WORDS OF A TEST'S NAME]";
 
 /** The options and arguments; undefined when one is wrong. */
@@ -76,7 +87,9 @@ async function loadTests() {
   const all = modules.flatMap((module, i) => module.tests.map(([name, body]) => ({ name: `${files[i].replace(".spec.mjs", "")}: ${name}`, body })));
   const wanted = isFirefox && words.length === 0 ? all.filter(({ name }) => MAIN_PATH.includes(name)) : all;
   if (wanted !== all && wanted.length < MAIN_PATH.length) throw new Error("a test of the main path is missing");
-  return wanted.filter(({ name }) => words.every((word) => name.includes(word)));
+  if (!LONG.every((name) => all.some((test) => test.name === name))) throw new Error("a long test is missing");
+  const isWhole = chosen.size !== undefined || chosen.slow || isFirefox || words.length > 0;
+  return wanted.filter(({ name }) => (isWhole || !LONG.includes(name)) && words.every((word) => name.includes(word)));
 }
 
 async function runTest({ name, body }, browser) {

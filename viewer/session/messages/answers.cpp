@@ -9,6 +9,7 @@
 #include "messages/described_json.hpp"
 #include "sources/extent.hpp"
 #include "supple/inspection.hpp"
+#include "supple/inspection_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/triangle_intersection.hpp"
 

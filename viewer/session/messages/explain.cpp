@@ -6,6 +6,7 @@
 
 #include "messages/answers.hpp"
 #include "supple/inspection.hpp"
+#include "supple/inspection_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
 
 namespace supple::viewer {

@@ -279,23 +279,6 @@ std::string WorldObject::validate() const {
   return "";
 }
 
-OctreeStatistics WorldObject::octree_statistics() const {
-  OctreeStatistics statistics = octree_.statistics();
-  statistics.bytes += resting_.bytes() + moving_.bytes() + near_.bytes();
-  statistics.cost = current_query_cost();
-  statistics.degradation = rebuild_policy_.degradation(statistics.cost);
-  if (octree_.spheres() != nullptr && resting_.is_current(placement_))
-    statistics.cost = query_cost(octree_.nodes(), octree_.spheres(), octree_.sphere());
-  if (!octree_.volumes().empty() && resting_.is_current(placement_))
-    statistics.cost = query_cost(octree_.nodes(), octree_.boxes(), octree_.volumes());
-  statistics.rebuilds = rebuilds_;
-  if (statistics.triangles != 0) {
-    statistics.bytes_per_triangle =
-        static_cast<double>(statistics.bytes) / static_cast<double>(statistics.triangles);
-  }
-  return statistics;
-}
-
 Vec3d WorldObject::non_finite_position(std::uint32_t vertex) const {
   const Vec3d end = placement_.position(vertex);
   return is_finite(end) ? placement_.start_position(vertex) : end;

@@ -10,7 +10,6 @@
 #include "core/parallel.hpp"
 #include "mesh/vertex_triangles.hpp"
 #include "octree/object_octree.hpp"
-#include "supple/inspection.hpp"
 #include "supple/options.hpp"
 #include "world/object/fine_boxes.hpp"
 #include "world/object/moving_shape.hpp"
@@ -152,7 +151,12 @@ class WorldObject {
   std::span<const std::uint8_t> inward_triangles();
   /// Checks the shapes that are up to date.
   std::string validate() const;
-  OctreeStatistics octree_statistics() const;
+  /// Memory of the octree and its shapes, without that of the positions.
+  std::size_t bytes() const { return octree_.bytes() + resting_.bytes() + moving_.bytes() + near_.bytes(); }
+  std::uint64_t rebuilds() const { return rebuilds_; }
+  /// `query_cost` of the boxes of a shape that is up to date.
+  double current_query_cost() const;
+  bool is_resting_current() const { return resting_.is_current(placement_); }
 
   ObjectOptions options;
 
@@ -164,7 +168,6 @@ class WorldObject {
   SearchedShapes of_this(SearchedShapes shapes) const;
   /// Adds the shapes that are up to date.
   SearchedShapes with_current(SearchedShapes shapes) const;
-  double current_query_cost() const;
   void update_volumes(const SearchedShapes& shapes);
 
   std::uint32_t face_count_;

@@ -1,0 +1,296 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "contact/intersection/neighbour_test.hpp"
+#include "core/error.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/sphere.hpp"
+#include "geometry/vector.hpp"
+#include "inspect/inspection.hpp"
+#include "inspect/searched_volumes.hpp"
+#include "mesh/share_vertex.hpp"
+#include "queries/box_faces.hpp"
+#include "supple/distance.hpp"
+#include "supple/triangle_intersection.hpp"
+
+namespace supple {
+namespace {
+
+std::uint32_t octree_triangle(const WorldObject& object, std::uint32_t triangle) {
+  check_triangle(object, triangle, "explain");
+  return object.octree().octree_triangle(triangle);
+}
+
+TrianglePoints points_of(const WorldObject& object, std::uint32_t triangle) {
+  const Triangle& corners = object.octree().triangles()[triangle];
+  const Placement& placement = object.placement();
+  return {placement.position(corners[0]), placement.position(corners[1]), placement.position(corners[2])};
+}
+
+/// Whether a corner is not finite at either end of the step.
+bool is_inert(const WorldObject& object, std::uint32_t triangle) {
+  const Triangle& corners = object.octree().triangles()[triangle];
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t vertex) {
+    return !is_finite(object.placement().position(vertex)) ||
+           !is_finite(object.placement().start_position(vertex));
+  });
+}
+
+/// Swaps a and b.
+PairExplanation mirrored(PairExplanation explanation) {
+  std::swap(explanation.box_a, explanation.box_b);
+  std::swap(explanation.sphere_a, explanation.sphere_b);
+  std::swap(explanation.slabs_a, explanation.slabs_b);
+  std::swap(explanation.level_a, explanation.level_b);
+  std::swap(explanation.number_a, explanation.number_b);
+  explanation.axis = Vec3d{} - explanation.axis;
+  return explanation;
+}
+
+QueryBox translated(const Aabb& box, const Vec3d& translation) {
+  return {Vec3d{box.min.x, box.min.y, box.min.z} + translation,
+          Vec3d{box.max.x, box.max.y, box.max.z} + translation};
+}
+
+/// Sets the axis along which the boxes are furthest apart, from a to b, and the distance along it.
+void set_gap(PairExplanation& explanation, const QueryBox& a, const QueryBox& b) {
+  explanation.distance = -INFINITY;
+  const auto consider = [&](int axis, double sign, double gap) {
+    if (!(gap > explanation.distance)) return;
+    explanation.distance = gap;
+    explanation.axis = {};
+    explanation.axis[axis] = sign;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    consider(axis, 1, b.min[axis] - a.max[axis]);
+    consider(axis, -1, a.min[axis] - b.max[axis]);
+  }
+}
+
+/// Sets the direction from centre to centre and the distance between the spheres. Spheres that do not enclose
+/// their triangles (equations 3 and 4 of the paper) may also be empty.
+void set_gap(PairExplanation& explanation, const Vec3d& between_centers) {
+  const double distance = norm(between_centers);
+  if (!(distance > 0)) return;
+  explanation.axis = between_centers * (1 / distance);
+  explanation.distance = distance - explanation.sphere_a.radius - explanation.sphere_b.radius;
+}
+
+/// The extent of a volume along a direction.
+struct Extent {
+  double low, high;
+};
+/// Returns the extent of the oriented box that has these three slabs.
+Extent extent_along(Vec3d direction, std::span<const Slab> box) {
+  Extent extent{0, 0};
+  for (const Slab& slab : box) {
+    const double along = dot(direction, Vec3d{slab.direction.x, slab.direction.y, slab.direction.z});
+    extent.low += along * (along > 0 ? slab.low : slab.high);
+    extent.high += along * (along > 0 ? slab.high : slab.low);
+  }
+  return extent;
+}
+
+/// Sets the direction in which the slabs of the explanation are furthest apart, and the gap along it.
+void set_gap(PairExplanation& explanation) {
+  explanation.distance = -INFINITY;
+  const auto consider = [&](Vec3d direction, Extent a, Extent b) {
+    const double length = norm(direction);
+    const double after = (b.low - a.high) / length, before = (a.low - b.high) / length;
+    if (!(std::max(after, before) > explanation.distance)) return;
+    explanation.distance = std::max(after, before);
+    explanation.axis = direction * ((after > before ? 1 : -1) / length);
+  };
+  const std::span<const Slab> slabs_a = explanation.slabs_a, slabs_b = explanation.slabs_b;
+  const auto direction = [](const Slab& slab) {
+    return Vec3d{slab.direction.x, slab.direction.y, slab.direction.z};
+  };
+  constexpr std::size_t axes_of_box = 3;
+  if (slabs_a.size() > axes_of_box) {
+    for (std::size_t d = 0; d < slabs_a.size(); ++d)
+      consider(direction(slabs_a[d]), {slabs_a[d].low, slabs_a[d].high}, {slabs_b[d].low, slabs_b[d].high});
+    return;
+  }
+  const auto consider_boxes = [&](Vec3d along) {
+    // The cross product of parallel axes has no direction.
+    if (norm(along) > 0x1p-20) consider(along, extent_along(along, slabs_a), extent_along(along, slabs_b));
+  };
+  for (const Slab& a : slabs_a) {
+    consider_boxes(direction(a));
+    for (const Slab& b : slabs_b) consider_boxes(cross(direction(a), direction(b)));
+  }
+  for (const Slab& b : slabs_b) consider_boxes(direction(b));
+}
+
+Vec3d center(const BoundingSphere& sphere, const Vec3d& translation) {
+  return Vec3d{sphere.center.x, sphere.center.y, sphere.center.z} + translation;
+}
+
+PairExplanation objects_apart(const WorldObject& a, const WorldObject& b, BoundingVolume bounding_volume,
+                              bool has_elements) {
+  PairExplanation explanation{.stage = PairStage::object_volumes};
+  if (bounding_volume == BoundingVolume::sphere) {
+    explanation.sphere_a = a.sphere();
+    explanation.sphere_b = b.sphere();
+    set_gap(explanation, center(b.sphere(), {}) - center(a.sphere(), {}));
+  } else {
+    explanation.box_a = has_elements ? unclamped(a.box()) : a.box();
+    explanation.box_b = has_elements ? unclamped(b.box()) : b.box();
+    set_gap(explanation, translated(explanation.box_a, {}), translated(explanation.box_b, {}));
+    if (!has_elements && overlap(a.box(), b.box())) {
+      explanation.slabs_a = object_slabs(a.resting_view());
+      explanation.slabs_b = object_slabs(b.resting_view());
+      set_gap(explanation);
+    }
+  }
+  return explanation;
+}
+
+PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, const WorldObject& object_a,
+                            const WorldObject& object_b) {
+  PairExplanation explanation{.stage = PairStage::octree_volumes};
+  explanation.level_a = cell_level(pair.a, at.node_a);
+  explanation.level_b = cell_level(pair.b, at.node_b);
+  explanation.number_a = cell_number(pair.a, object_a.options.octree.arity, at.node_a, at.child_a);
+  explanation.number_b = cell_number(pair.b, object_b.options.octree.arity, at.node_b, at.child_b);
+  const Vec3d &to_a = pair.a.translation, &to_b = pair.b.translation;
+  if (pair.a.spheres != nullptr) {
+    const BoundingSphere a = child_sphere(pair.a, at.node_a, at.child_a);
+    const BoundingSphere b = child_sphere(pair.b, at.node_b, at.child_b);
+    explanation.sphere_a = moved(a, to_a);
+    explanation.sphere_b = moved(b, to_b);
+    set_gap(explanation, center(b, to_b) - center(a, to_a));
+  } else {
+    const Aabb a = child_box(pair.a, at.node_a, at.child_a), b = child_box(pair.b, at.node_b, at.child_b);
+    explanation.box_a = moved(a, to_a);
+    explanation.box_b = moved(b, to_b);
+    set_gap(explanation, translated(a, to_a), translated(b, to_b));
+    if (!pair.a.volumes.empty() && !(explanation.distance > 0)) {
+      explanation.slabs_a = child_slabs(pair.a, at.node_a, at.child_a);
+      explanation.slabs_b = child_slabs(pair.b, at.node_b, at.child_b);
+      set_gap(explanation);
+    }
+  }
+  return explanation;
+}
+
+PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoints& b) {
+  PairExplanation explanation{.stage = PairStage::triangle_boxes};
+  const QueryBox box_a = box_of(a), box_b = box_of(b);
+  for (const Vec3d& corner : {box_a.min, box_a.max}) extend(explanation.box_a, corner);
+  for (const Vec3d& corner : {box_b.min, box_b.max}) extend(explanation.box_b, corner);
+  set_gap(explanation, box_a, box_b);
+  return explanation;
+}
+
+PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b) {
+  PairExplanation explanation{.stage = PairStage::exact_test};
+  // Continuous contacts do not include triangles that intersect from the start when none of their elements
+  // touch.
+  if (triangles_intersect(a, b)) return explanation;
+  explanation.distance = any_distance;
+  const auto consider = [&](const std::optional<ElementDistance>& found, double from_a_to_b) {
+    if (!found || found->distance > explanation.distance) return;
+    explanation.distance = found->distance;
+    explanation.axis = from_a_to_b * found->normal;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    consider(point_triangle_distance(a[i], b), -1);
+    consider(point_triangle_distance(b[i], a), 1);
+    for (std::size_t k = 0; k < 3; ++k)
+      consider(edge_edge_distance({a[i], a[(i + 1) % 3]}, {b[k], b[(k + 1) % 3]}), -1);
+  }
+  return explanation;
+}
+
+}  // namespace
+
+/// Whether a continuous contact or a near pair of the result joins an element of one triangle to an element
+/// of the other.
+bool Inspection::are_joined(const ContactJob& job, TrianglePair triangles) const {
+  const auto corners = [&](std::uint32_t slot, std::uint32_t triangle) {
+    const ObjectOctree& octree = world_[slot].octree();
+    return std::pair(octree.triangle_ids()[triangle], octree.triangles()[triangle]);
+  };
+  const auto a = corners(job.a, triangles.a), b = corners(job.b, triangles.b);
+  const auto has = [](const std::pair<std::uint32_t, Triangle>& triangle, bool is_face,
+                      const std::array<std::uint32_t, 2>& element) {
+    const Triangle& of = triangle.second;
+    if (is_face) return element[0] == triangle.first;
+    return std::all_of(element.begin(), element.end(), [&](std::uint32_t vertex) {
+      return std::find(of.begin(), of.end(), vertex) != of.end();
+    });
+  };
+  const auto joins = [&](FeatureKind kind_a, FeatureKind kind_b, const auto& pair) {
+    const bool face_a = kind_a == FeatureKind::face, face_b = kind_b == FeatureKind::face;
+    if (has(a, face_a, pair.element_a) && has(b, face_b, pair.element_b)) return true;
+    return job.a == job.b && has(b, face_a, pair.element_a) && has(a, face_b, pair.element_b);
+  };
+  const auto any_of_pairs = [&](std::span<const ContactGroup> groups, const auto& any) {
+    return std::ranges::any_of(groups, [&](const ContactGroup& group) {
+      return group.a == world_.id_of(job.a) && group.b == world_.id_of(job.b) && any(group);
+    });
+  };
+  return any_of_pairs(result_.continuous_groups,
+                      [&](const ContactGroup& group) {
+                        return std::ranges::any_of(
+                            result_.continuous_contacts_of(group), [&](const ContinuousContact& contact) {
+                              const auto [kind_a, kind_b] = feature_kinds(contact.kind);
+                              return joins(kind_a, kind_b, contact);
+                            });
+                      }) ||
+         any_of_pairs(result_.proximity_groups, [&](const ContactGroup& group) {
+           return std::ranges::any_of(result_.proximity_pairs_of(group), [&](const ProximityPair& pair) {
+             return joins(pair.kind_a, pair.kind_b, pair);
+           });
+         });
+}
+
+/// Follows the stages of `detect`. Triangles are in the order of the traversal.
+PairExplanation Inspection::explain_in_order(const ContactJob& job, TrianglePair triangles) const {
+  const WorldObject &a = world_[job.a], &b = world_[job.b];
+  const bool same_object = job.a == job.b;
+  if (same_object ? !a.options.self_collision : !world_.may_pair({job.a, job.b}))
+    return {.stage = PairStage::not_tested};
+  const Triangle &ids_a = a.octree().triangles()[triangles.a], &ids_b = b.octree().triangles()[triangles.b];
+  if (!may_touch_by_groups(a.vertex_groups(), ids_a, b.vertex_groups(), ids_b))
+    return {.stage = PairStage::not_tested};
+  // Elements touch or are near even when the pair of triangles they belong to is not tested.
+  if (are_joined(job, triangles)) return {};
+  if (same_object && share_vertex(ids_a, ids_b)) {
+    const bool meet = question().searches_at_rest() && a.options.neighbours == Neighbours::exact &&
+                      triangles.a != triangles.b && !is_inert(a, triangles.a) && !is_inert(b, triangles.b) &&
+                      meet_elsewhere(ids_a, points_of(a, triangles.a), ids_b, points_of(b, triangles.b));
+    return {.stage = meet ? PairStage::contact : PairStage::shared_vertex};
+  }
+  if (is_inert(a, triangles.a) || is_inert(b, triangles.b)) return {.stage = PairStage::inert};
+  const ObjectPair ids{world_.id_of(job.a), world_.id_of(job.b)};
+  if (!same_object && !std::binary_search(pairs().begin(), pairs().end(), ids))
+    return objects_apart(a, b, world_.options.bounding_volume,
+                         question().is_continuous() || question().has_proximity());
+  const ObjectPairView pair = search_view(job);
+  const ChildPair at = last_children(pair, triangles);
+  if (at.apart) return cells_apart(pair, at, a, b);
+  const TrianglePoints points_a = points_of(a, triangles.a), points_b = points_of(b, triangles.b);
+  const bool boxes_apart =
+      pair.is_moving() ? moving_faces_apart(pair, triangles) : leaf_triangles_apart(pair, at, triangles);
+  if (boxes_apart) return triangle_boxes_apart(points_a, points_b);
+  if (question().searches_at_rest() && triangles_intersect(points_a, points_b)) return {};
+  return triangles_apart(points_a, points_b);
+}
+
+PairExplanation Inspection::explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
+                                    std::uint32_t triangle_b) const {
+  const TrianglePair triangles{octree_triangle(world_.object(id_a, "explain"), triangle_a),
+                               octree_triangle(world_.object(id_b, "explain"), triangle_b)};
+  if (!is_current_) fail("explain: nothing was detected at the present positions; call detect first");
+  const bool in_order = id_a == id_b ? triangles.a <= triangles.b : id_a < id_b;
+  if (in_order) return explain_in_order({id_a.index, id_b.index}, triangles);
+  return mirrored(explain_in_order({id_b.index, id_a.index}, {triangles.b, triangles.a}));
+}
+
+}  // namespace supple

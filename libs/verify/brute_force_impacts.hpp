@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "supple/contact.hpp"
+#include "supple/verify.hpp"
+#include "verify/brute_force_elements.hpp"
+
+namespace supple {
+
+/// Two elements, named as in `ContinuousContact`.
+struct TouchingElements {
+  ElementPairKind kind = ElementPairKind::vertex_face;
+  std::array<std::uint32_t, 2> element_a{}, element_b{};
+  TimeBracket time;
+  /// The definition leaves a little room for rounding, within which both answers are right.
+  bool may_be_missing = false;
+};
+
+/// What of the truth is reported.
+struct BruteForceSearch {
+  ImpactOptions impact;
+  ElementKinds kinds = ElementKinds::all;
+  ContinuousListing listing = ContinuousListing::all;
+};
+
+struct BruteForceImpacts {
+  std::vector<TouchingElements> touching;  ///< in canonical order
+  std::uint64_t pairs_checked = 0;
+};
+
+/// Returns all pairs of elements that touch within the step and that a search reports; with
+/// `ContinuousListing::first` also all others. Each pair is decided by comparing
+/// the exact boxes of the elements at both ends or by algebra. For an object with itself (`same_object`),
+/// pairs that share a vertex id are left out. Elements with a coordinate that is not finite touch nothing;
+/// vertices that no triangle uses are not elements.
+///
+/// The boxes of b are sorted along x, so that one comparison decides many pairs.
+BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
+                                              bool same_object, const BruteForceSearch& search,
+                                              const Parallel& parallel);
+
+/// Appends the differences between reported contacts and the truth, both in canonical order: contacts that
+/// are missed or added, and times that are later than the truth or more than `toi_tolerance_at` earlier.
+///
+/// With `ContinuousListing::first`, a contact may be missing when both of its elements have a contact in
+/// `all_reported`, of all pairs of objects, that is not later.
+void compare_impacts(const ObjectPair& pair, std::span<const ContinuousContact> reported,
+                     std::span<const TouchingElements> truth, ContinuousListing listing,
+                     std::span<const ContinuousContact> all_reported,
+                     std::vector<ContinuousDifference>& differences);
+
+}  // namespace supple

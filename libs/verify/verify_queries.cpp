@@ -1,0 +1,378 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/error.hpp"
+#include "geometry/vector.hpp"
+#include "queries/check_queries.hpp"
+#include "queries/pairs/nearest_pair.hpp"
+#include "scene/scene_implementation.hpp"
+#include "supple/result_descriptions.hpp"
+#include "supple/verify.hpp"
+#include "verify/brute_force_queries.hpp"
+#include "verify/plain_objects.hpp"
+
+namespace supple {
+namespace {
+
+/// Queries do not read the groups of vertices.
+PlainObject object_of_queries(const WorldObject& object) {
+  PlainObject plain = plain_object(object);
+  plain.groups = {};
+  return plain;
+}
+
+/// Calls `check(i)` for all i below `count`, on all threads. It returns both answers when they differ.
+template <class Check>
+std::vector<WrongAnswer> wrong_answers(const Parallel& parallel, std::size_t count, const Check& check) {
+  std::vector<std::vector<WrongAnswer>> of_workers(parallel.worker_count());
+  parallel.for_ranges(count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::optional<WrongAnswer> wrong = check(i);
+      if (!wrong) continue;
+      wrong->query = i;
+      of_workers[worker].push_back(*std::move(wrong));
+    }
+  });
+  std::vector<WrongAnswer> all;
+  for (auto& part : of_workers) std::move(part.begin(), part.end(), std::back_inserter(all));
+  std::ranges::sort(all, {}, &WrongAnswer::query);
+  return all;
+}
+
+/// The first place at which two lists differ. `describe_found` and `describe_truth` give the words of an
+/// item.
+template <class Found, class Truth, class Equal, class DescribeFound, class DescribeTruth>
+std::optional<WrongAnswer> compare_lists(std::span<const Found> found, std::span<const Truth> truth,
+                                         const Equal& equal, const DescribeFound& describe_found,
+                                         const DescribeTruth& describe_truth) {
+  if (std::ranges::equal(found, truth, equal)) return {};
+  const auto differ = std::ranges::mismatch(found, truth, equal);
+  const auto place = differ.in1 - found.begin();
+  const auto item = [&](bool is_end, const auto& describe) {
+    return std::to_string(place) + ": " + (is_end ? "nothing" : describe());
+  };
+  return WrongAnswer{0, item(differ.in1 == found.end(), [&] { return describe_found(*differ.in1); }),
+                     item(differ.in2 == truth.end(), [&] { return describe_truth(*differ.in2); })};
+}
+
+/// The items of a list for each query. They must stand by ascending query, like those of the scene.
+template <class Item>
+class ItemsOfQueries {
+ public:
+  ItemsOfQueries(std::span<const Item> items, std::size_t count, const char* call)
+      : items_(items), first_(count + 1, 0) {
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (items[i].query >= count || (i > 0 && items[i].query < items[i - 1].query))
+        fail(std::string(call) + ": item " + std::to_string(i) + " of the list is for query " +
+             std::to_string(items[i].query) + "; give the list as the query returned it");
+      ++first_[items[i].query + 1];
+    }
+    for (std::size_t i = 0; i < count; ++i) first_[i + 1] += first_[i];
+  }
+  std::span<const Item> of(std::size_t query) const {
+    return items_.subspan(first_[query], first_[query + 1] - first_[query]);
+  }
+
+ private:
+  std::span<const Item> items_;
+  std::vector<std::size_t> first_;
+};
+
+/// Names objects in the words of answers, also those that are not in the scene.
+class AnswerWords {
+ public:
+  explicit AnswerWords(const World& world) : world_(world) {}
+
+  std::string triangle(ObjectId object, std::uint32_t triangle) const {
+    return "triangle " + std::to_string(triangle) + " of " + name(object);
+  }
+  std::string name(ObjectId object) const {
+    const std::string number = "object " + std::to_string(object.index);
+    if (!world_.contains(object)) return number + " (not in the scene)";
+    return number + " (" + world_[object.index].options.name + ")";
+  }
+  std::string element(FeatureKind kind, const std::array<std::uint32_t, 2>& ids) const {
+    const std::string text = std::string(word_of(kind)) + " " + std::to_string(ids[0]);
+    return kind == FeatureKind::edge ? text + " " + std::to_string(ids[1]) : text;
+  }
+
+ private:
+  const World& world_;
+};
+
+/// The objects that the filter lets through.
+PlainScene plain_scene(const World& world, const QueryFilter& seen, const char* call) {
+  if (seen.object) world.object(*seen.object, call);
+  PlainScene plain;
+  for (const ObjectId id : world.objects()) {
+    const WorldObject& found = world[id.index];
+    if (!sees(seen, id, found.options)) continue;
+    plain.ids.push_back(id);
+    plain.surfaces.emplace_back(object_of_queries(found));
+  }
+  return plain;
+}
+
+template <class Region>
+std::vector<WrongAnswer> wrong_overlaps(const World& world, std::span<const Region> regions,
+                                        std::span<const Overlap> overlaps, const QueryFilter& seen) {
+  const ItemsOfQueries<Overlap> found(overlaps, regions.size(), "verify_overlaps");
+  const PlainScene plain = plain_scene(world, seen, "verify_overlaps");
+  const AnswerWords words(world);
+  return wrong_answers(world.parallel, regions.size(), [&](std::size_t i) {
+    std::vector<Overlap> truth;
+    for (std::size_t s = 0; s < plain.surfaces.size(); ++s) {
+      for (const BoxedCorners& t : plain.surfaces[s].triangles) {
+        if (overlaps_by_brute_force(regions[i], t))
+          truth.push_back({static_cast<std::uint32_t>(i), plain.ids[s], t.triangle});
+      }
+    }
+    const auto describe = [&](const Overlap& o) { return words.triangle(o.object, o.triangle); };
+    return compare_lists(found.of(i), std::span<const Overlap>(truth), std::equal_to<>(), describe, describe);
+  });
+}
+/// Both answers in words when they differ. `found` is null when nothing was found.
+std::optional<WrongAnswer> wrong_distance(const World& world, const ObjectPair& pair, double max_distance,
+                                          const ProximityPair* found) {
+  const auto with_extra_elements = [&](ObjectId id) {
+    PlainObject plain = object_of_queries(world[id.index]);
+    plain.triangles = plain_moving_object(world[id.index]).triangles;
+    return plain;
+  };
+  const PlainObject a = with_extra_elements(pair.a), b = with_extra_elements(pair.b);
+  std::optional<double> guess;
+  if (found != nullptr) guess = found->distance;
+  const std::optional<ExactPair> truth =
+      nearest_pair_by_brute_force(a, b, max_distance, guess, world.parallel);
+  const AnswerWords words(world);
+  const auto is_on_first_contact = [&] {
+    const auto corners_of = [](FeatureKind kind, const std::array<std::uint32_t, 2>& ids,
+                               const PlainObject& object,
+                               std::uint32_t triangle) -> std::optional<TrianglePoints> {
+      const Triangle& whole = object.triangles[triangle];
+      const auto has = [&](std::uint32_t v) { return std::ranges::find(whole, v) != whole.end(); };
+      const auto& at = object.positions;
+      if (kind == FeatureKind::face) {
+        if (ids != std::array{triangle, triangle}) return {};
+        return TrianglePoints{at[whole[0]], at[whole[1]], at[whole[2]]};
+      }
+      if (!has(ids[0]) || !has(ids[1]) || (kind == FeatureKind::vertex) != (ids[0] == ids[1])) return {};
+      return TrianglePoints{at[ids[0]], at[ids[1]], at[ids[1]]};
+    };
+    const auto on_a = corners_of(found->kind_a, found->element_a, a, truth->contact->a),
+               on_b = corners_of(found->kind_b, found->element_b, b, truth->contact->b);
+    return found->distance == 0 && on_a && on_b && found->on_a == Feature{found->kind_a, 0} &&
+           found->on_b == Feature{found->kind_b, 0} && triangles_intersect_by_axes(*on_a, *on_b);
+  };
+  const auto is_nearest = [&] {
+    const NearElements& near = truth->nearest;
+    return found->kind_a == near.kind_a && found->kind_b == near.kind_b &&
+           found->element_a == near.element_a && found->element_b == near.element_b &&
+           found->on_a == near.on_a && found->on_b == near.on_b && is_accurate(found->distance, near.squared);
+  };
+  const auto is_right = [&] {
+    if (found == nullptr || !truth) return found == nullptr && !truth;
+    if (found->object_a != pair.a || found->object_b != pair.b) return false;
+    return truth->contact ? is_on_first_contact() : is_nearest();
+  };
+  if (is_right()) return {};
+  const auto describe = [&](const auto& of, double distance) {
+    return words.element(of.kind_a, of.element_a) + " and " + words.element(of.kind_b, of.element_b) +
+           ", distance " + text_of(distance);
+  };
+  std::string of_found = words.name(pair.a) + " and " + words.name(pair.b) + ": ", of_truth = "nothing";
+  of_found += found != nullptr ? describe(*found, found->distance) : "nothing";
+  if (truth && truth->contact)
+    of_truth = "distance 0, triangles " + std::to_string(truth->contact->a) + " and " +
+               std::to_string(truth->contact->b) + " intersect";
+  else if (truth)
+    of_truth = describe(truth->nearest, rounded_root(truth->nearest.squared));
+  return WrongAnswer{0, of_found, of_truth};
+}
+
+}  // namespace
+
+std::vector<WrongAnswer> verify_closest(const Scene& scene, std::span<const Vec3d> points,
+                                        std::span<const std::optional<ClosestPoint>> results,
+                                        const ClosestOptions& query) {
+  const World& world = SceneAccess::of(scene).world;
+  check_counts(points.size(), results.size(), "verify_closest");
+  check_distance(query.max_distance, "verify_closest");
+  if (query.signed_distance) check_closed(world, query.filter, "verify_closest");
+  const PlainScene plain = plain_scene(world, query.filter, "verify_closest");
+  const AnswerWords words(world);
+  const auto describe = [&](ObjectId object, std::uint32_t triangle, const Feature& feature, double distance,
+                            const std::array<double, 3>& weights) {
+    return words.triangle(object, triangle) + " at " + word_of(feature.kind) + " " +
+           std::to_string(feature.index) + ", distance " + text_of(distance) + ", barycentric " +
+           text_of(weights[0]) + " " + text_of(weights[1]) + " " + text_of(weights[2]);
+  };
+  return wrong_answers(world.parallel, points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+    std::optional<ExactNearest> truth;
+    if (is_finite(points[i])) truth = nearest_by_brute_force(points[i], plain.surfaces, query.max_distance);
+    const bool is_inside = truth && query.signed_distance &&
+                           plain.surfaces[truth->surface].containment(points[i]) == Containment::inside;
+    const std::optional<ClosestPoint>& found = results[i];
+    const auto is_right = [&] {
+      if (found.has_value() != truth.has_value()) return false;
+      if (!found) return true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!std::isfinite(found->barycentric[k])) return false;
+        const Rational error = Rational(found->barycentric[k]) - truth->distance.weights_b[k];
+        if (abs(error) > Rational(0x1p-50)) return false;
+      }
+      return found->object == plain.ids[truth->surface] && found->triangle == truth->triangle &&
+             found->feature == truth->distance.on_b &&
+             is_accurate(is_inside ? -found->distance : found->distance, truth->distance.squared);
+    };
+    if (is_right()) return {};
+    std::string of_found = "nothing", of_truth = "nothing";
+    if (found)
+      of_found =
+          describe(found->object, found->triangle, found->feature, found->distance, found->barycentric);
+    if (truth) {
+      std::array<double, 3> weights;
+      for (std::size_t k = 0; k < 3; ++k) weights[k] = truth->distance.weights_b[k].convert_to<double>();
+      const double distance = rounded_root(truth->distance.squared);
+      of_truth = describe(plain.ids[truth->surface], truth->triangle, truth->distance.on_b,
+                          is_inside ? -distance : distance, weights);
+    }
+    return WrongAnswer{0, of_found, of_truth};
+  });
+}
+
+std::vector<WrongAnswer> verify_cast(const Scene& scene, std::span<const Ray> rays,
+                                     std::span<const std::optional<RayHit>> results,
+                                     const CastOptions& query) {
+  const World& world = SceneAccess::of(scene).world;
+  check_counts(rays.size(), results.size(), "verify_cast");
+  const PlainScene plain = plain_scene(world, query.filter, "verify_cast");
+  const AnswerWords words(world);
+  const auto describe = [&](ObjectId object, std::uint32_t triangle, double t, std::uint64_t hits) {
+    const std::string text = words.triangle(object, triangle) + ", t " + text_of(t);
+    return query.count_hits ? text + ", hits " + std::to_string(hits) : text;
+  };
+  return wrong_answers(world.parallel, rays.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+    const std::vector<ExactHit> truth = hits_by_brute_force(rays[i], plain.surfaces);
+    const std::optional<RayHit>& found = results[i];
+    const std::uint64_t hits = query.count_hits ? truth.size() : 1;
+    const bool is_right = found && !truth.empty()
+                              ? found->object == plain.ids[truth.front().surface] &&
+                                    found->triangle == truth.front().triangle && found->hits == hits &&
+                                    is_accurate(found->t, truth.front().t * truth.front().t)
+                              : !found && truth.empty();
+    if (is_right) return {};
+    std::string of_found = "nothing", of_truth = "nothing";
+    if (found) of_found = describe(found->object, found->triangle, found->t, found->hits);
+    if (!truth.empty())
+      of_truth = describe(plain.ids[truth.front().surface], truth.front().triangle,
+                          truth.front().t.convert_to<double>(), hits);
+    return WrongAnswer{0, of_found, of_truth};
+  });
+}
+
+std::vector<WrongAnswer> verify_cast_all(const Scene& scene, std::span<const Ray> rays,
+                                         std::span<const ListedRayHit> hits, const QueryFilter& seen) {
+  const World& world = SceneAccess::of(scene).world;
+  const ItemsOfQueries<ListedRayHit> found(hits, rays.size(), "verify_cast_all");
+  const PlainScene plain = plain_scene(world, seen, "verify_cast_all");
+  const AnswerWords words(world);
+  return wrong_answers(world.parallel, rays.size(), [&](std::size_t i) {
+    const std::vector<ExactHit> truth = hits_by_brute_force(rays[i], plain.surfaces);
+    const auto describe = [&](ObjectId object, std::uint32_t triangle, double t, std::uint64_t count) {
+      return words.triangle(object, triangle) + ", t " + text_of(t) + ", hits " + std::to_string(count);
+    };
+    return compare_lists(
+        found.of(i), std::span(truth),
+        [&](const ListedRayHit& f, const ExactHit& t) {
+          return f.hit.object == plain.ids[t.surface] && f.hit.triangle == t.triangle &&
+                 f.hit.hits == truth.size() && is_accurate(f.hit.t, t.t * t.t);
+        },
+        [&](const ListedRayHit& f) { return describe(f.hit.object, f.hit.triangle, f.hit.t, f.hit.hits); },
+        [&](const ExactHit& t) {
+          return describe(plain.ids[t.surface], t.triangle, t.t.convert_to<double>(), truth.size());
+        });
+  });
+}
+
+std::vector<WrongAnswer> verify_overlaps(const Scene& scene, std::span<const QueryBox> boxes,
+                                         std::span<const Overlap> found, const QueryFilter& filter) {
+  return wrong_overlaps(SceneAccess::of(scene).world, boxes, found, filter);
+}
+std::vector<WrongAnswer> verify_overlaps(const Scene& scene, std::span<const QuerySphere> spheres,
+                                         std::span<const Overlap> found, const QueryFilter& filter) {
+  return wrong_overlaps(SceneAccess::of(scene).world, spheres, found, filter);
+}
+
+std::vector<WrongAnswer> verify_inside(const Scene& scene, std::span<const Vec3d> points,
+                                       std::span<const Containment> results, const QueryFilter& seen) {
+  const World& world = SceneAccess::of(scene).world;
+  check_counts(points.size(), results.size(), "verify_inside");
+  check_closed(world, seen, "verify_inside");
+  const PlainScene plain = plain_scene(world, seen, "verify_inside");
+  return wrong_answers(world.parallel, points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
+    Containment truth = Containment::outside;
+    for (const PlainSurface& surface : plain.surfaces) {
+      if (is_finite(points[i])) truth = std::max(truth, surface.containment(points[i]));
+    }
+    if (results[i] == truth) return {};
+    return WrongAnswer{0, word_of(results[i]), word_of(truth)};
+  });
+}
+
+std::vector<WrongAnswer> verify_distance(const Scene& scene, ObjectId a, ObjectId b,
+                                         const std::optional<ProximityPair>& found) {
+  const World& world = SceneAccess::of(scene).world;
+  const ObjectPair pair = world.two_objects(a, b, "verify_distance");
+  const auto wrong = wrong_distance(world, pair, any_distance, found ? &*found : nullptr);
+  return wrong ? std::vector{*wrong} : std::vector<WrongAnswer>{};
+}
+
+std::vector<WrongAnswer> verify_distances(const Scene& scene, double max_distance,
+                                          std::span<const ProximityPair> found) {
+  const World& world = SceneAccess::of(scene).world;
+  check_distance(max_distance, "verify_distances");
+  const AnswerWords words(world);
+  std::vector<WrongAnswer> wrong;
+  const ProximityPair* next = found.data();
+  const ProximityPair* const end = next + found.size();
+  std::uint64_t place = 0;
+  const auto note_added = [&] {
+    wrong.push_back({place,
+                     words.name(next->object_a) + " and " + words.name(next->object_b) + ": distance " +
+                         text_of(next->distance),
+                     "no such pair at this place of the list"});
+    ++next;
+  };
+  const auto objects_of = [](const ProximityPair& pair) { return ObjectPair{pair.object_a, pair.object_b}; };
+  for (const ObjectPair& pair : world.all_pairs()) {
+    if (pair.a == pair.b) continue;
+    while (next != end && objects_of(*next) < pair) note_added();
+    const bool is_listed = next != end && objects_of(*next) == pair;
+    if (const auto differs = wrong_distance(world, pair, max_distance, is_listed ? next : nullptr))
+      wrong.push_back({place, differs->found, differs->expected});
+    if (is_listed) ++next;
+    ++place;
+  }
+  while (next != end) note_added();
+  return wrong;
+}
+
+std::vector<WrongAnswer> verify_any_contact(const Scene& scene, ObjectId a, ObjectId b, bool found) {
+  const World& world = SceneAccess::of(scene).world;
+  const ObjectPair pair = world.two_objects(a, b, "verify_any_contact");
+  const auto contacts = intersecting_pairs_by_brute_force(
+      object_of_queries(world[pair.a.index]), object_of_queries(world[pair.b.index]), false, world.parallel);
+  if (contacts.empty() != found) return {};
+  return {{0, found ? "a contact" : "no contact",
+           contacts.empty() ? "no contact"
+                            : "triangles " + std::to_string(contacts.front().a) + " and " +
+                                  std::to_string(contacts.front().b) + " intersect"}};
+}
+
+}  // namespace supple
