@@ -1,6 +1,7 @@
 #include "contact/distance/distance_batch.hpp"
 
 namespace supple {
+
 void DistanceBatch::compute(std::span<const FoundFeatures> pairs, std::span<ElementDistance> results,
                             std::uint64_t& exact_count) {
   for (const FeaturePair kind :
