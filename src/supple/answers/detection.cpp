@@ -1,5 +1,7 @@
 #include "answers/detection.hpp"
 
+#include <utility>
+
 #include "core/timer.hpp"
 #include "queries/queries.hpp"
 
@@ -42,17 +44,19 @@ bool Detection::run(const Question& question, std::uint64_t max_contacts, const 
 }
 
 bool Detection::find_contacts(const PassInput& input, StepStats& stats) {
-  intersected_objects_.clear();
-  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
-    WorldObject* const object = world_.at(slot);
-    intersected_objects_.emplace_back();
-    if (object == nullptr) continue;
-    intersected_objects_.back() = {world_.id_of(slot),
-                                   object->resting_view(),
-                                   object->octree().triangle_ids(),
-                                   object->octree().vertex_count(),
-                                   object->vertex_groups(),
-                                   object->neighbours()};
+  intersected_objects_.resize(world_.slot_count());
+  is_listed_.assign(world_.slot_count(), 0);
+  for (const auto& [a, b] : input.jobs) {
+    for (const std::uint32_t slot : {a, b}) {
+      if (std::exchange(is_listed_[slot], std::uint8_t{1}) != 0) continue;
+      WorldObject& object = world_[slot];
+      intersected_objects_[slot] = {world_.id_of(slot),
+                                    object.resting_view(),
+                                    object.octree().triangle_ids(),
+                                    object.octree().vertex_count(),
+                                    object.vertex_groups(),
+                                    object.neighbours()};
+    }
   }
   const IntersectionSearch search{question_.has_intersections(),
                                   question_.contact_points || question_.has_penetration(),

@@ -62,7 +62,8 @@ class Detection {
   UntestedKinds untested_;
   std::vector<NonFiniteVertex> non_finite_;
   // By slot.
-  std::vector<IntersectedObject> intersected_objects_;
+  std::vector<IntersectedObject> intersected_objects_;  // those of the jobs
+  std::vector<std::uint8_t> is_listed_;
   std::vector<MovingObject> moving_objects_;
   std::vector<PenetratedObject> penetrated_objects_;
 };

@@ -52,48 +52,29 @@ ObjectPairs::ObjectPairs(const World& world, BoundingVolume volume)
       volume_(volume),
       finder_(world.options.broad_phase, volume, world.options.scene_octree) {}
 
-/// Lists the boxes and spheres that the broad phase reads, and the slots where they may have changed.
+/// Lists the boxes and spheres that the broad phase reads.
 void ObjectPairs::list_volumes(const Question& question, std::span<const VertexWays> ways) {
-  const SearchedShapes shapes = question.shapes();
-  const bool is_another_search = searched_ != shapes;
-  const std::size_t slots = world_.slot_count();
-  const std::span<const std::uint64_t> versions = world_.versions();
-  boxes_.resize(slots);
-  spheres_.resize(slots);
-  growths_.resize(slots, 0);
-  versions_.resize(slots, 0);
-  changed_.resize(slots, 0);
-  changed_slots_.clear();
-  for (std::uint32_t slot = 0; slot < slots; ++slot) {
+  boxes_.assign(world_.slot_count(), {});
+  spheres_.assign(world_.slot_count(), {});
+  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
     const WorldObject* const object = world_.at(slot);
-    const double growth =
-        object != nullptr ? growth_of(object->options, ways.empty() ? nullptr : &ways[slot], question) : 0;
-    if (versions_[slot] != versions[slot]) changed_[slot] = 1;
-    versions_[slot] = versions[slot];
-    if (changed_[slot] == 0 && !is_another_search && growths_[slot] == growth) continue;
-    growths_[slot] = growth;
-    const Aabb box = object != nullptr ? grown(object->box(), growth) : Aabb{};
-    const BoundingSphere sphere = object != nullptr ? grown(object->sphere(), growth) : BoundingSphere{};
-    if (changed_[slot] == 0 && box == boxes_[slot] && sphere == spheres_[slot]) continue;
-    changed_[slot] = 1;
-    changed_slots_.push_back(slot);
-    boxes_[slot] = box;
-    spheres_[slot] = sphere;
+    if (object == nullptr) continue;
+    const double growth = growth_of(object->options, ways.empty() ? nullptr : &ways[slot], question);
+    boxes_[slot] = grown(object->box(), growth);
+    spheres_[slot] = grown(object->sphere(), growth);
   }
-  searched_ = shapes;
+  searched_ = question.shapes();
 }
 
 void ObjectPairs::find(const Question& question, std::span<const VertexWays> ways) {
   list_volumes(question, ways);
   ObjectVolumes volumes;
-  volumes.dirty = changed_slots_;
   if (volume_ == BoundingVolume::sphere) {
     volumes.spheres = spheres_;
   } else {
     volumes.boxes = boxes_;
   }
   const std::span<const IndexPair> overlapping = finder_.find_pairs(volumes, world_.parallel);
-  std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
   pairs_.clear();
   for (const IndexPair& pair : overlapping) {
     if (!are_apart(pair) && question.may_pair(world_, pair))

@@ -51,10 +51,6 @@ class ObjectPairs {
   // By slot.
   std::vector<Aabb> boxes_;
   std::vector<BoundingSphere> spheres_;
-  std::vector<double> growths_;
-  std::vector<std::uint64_t> versions_;
-  std::vector<std::uint8_t> changed_;  // since the last search that succeeded
-  std::vector<std::uint32_t> changed_slots_;
   SearchedShapes searched_;
 };
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "answers/bucket_sort.hpp"
 #include "answers/contact_limit.hpp"
 #include "answers/contact_tasks.hpp"
 #include "answers/job_outcomes.hpp"
+#include "core/bucket_sort.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "core/timer.hpp"

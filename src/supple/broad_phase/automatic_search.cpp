@@ -1,8 +1,5 @@
 #include "broad_phase/automatic_search.hpp"
 
-#include "broad_phase/grid/grid_search.hpp"
-#include "broad_phase/octree/octree_search.hpp"
-
 namespace supple {
 namespace {
 
@@ -16,30 +13,24 @@ constexpr std::uint32_t steps_between_tries = 64;
 
 }  // namespace
 
-AutomaticSearch::AutomaticSearch(BoundingVolume bounding_volume, const SceneOctreeOptions& octree_options)
-    : octree_(std::make_unique<OctreeSearch>(bounding_volume, octree_options)),
-      grid_(std::make_unique<GridSearch>()) {}
-
-AutomaticSearch::~AutomaticSearch() = default;
-
 void AutomaticSearch::search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) {
   const bool few_changes = cost_of_change * volumes.changed().size() < volumes.slot_count();
   steps_with_few_changes_ = few_changes ? steps_with_few_changes_ + 1 : 0;
   steps_to_grid_ -= steps_to_grid_ != 0;
   ran_octree_ = steps_with_few_changes_ >= steps_before_build || steps_to_grid_ != 0;
-  if (!ran_octree_ && !grid_->search_unless_crowded(volumes, parallel, found)) {
+  if (!ran_octree_ && !grid_.search_unless_crowded(volumes, parallel, found)) {
     ran_octree_ = true;
     steps_to_grid_ = steps_between_tries;
   }
-  if (ran_octree_) octree_->search(volumes, parallel, found);
+  if (ran_octree_) octree_.search(volumes, parallel, found);
 }
 
 std::vector<SceneRegion> AutomaticSearch::regions(std::optional<std::uint32_t> slot) const {
-  return ran_octree_ ? octree_->regions(slot) : std::vector<SceneRegion>();
+  return ran_octree_ ? octree_.regions(slot) : std::vector<SceneRegion>();
 }
 
 std::string AutomaticSearch::validate(const VolumeStore& volumes) const {
-  return ran_octree_ ? octree_->validate(volumes) : grid_->validate(volumes);
+  return ran_octree_ ? octree_.validate(volumes) : grid_.validate(volumes);
 }
 
 }  // namespace supple

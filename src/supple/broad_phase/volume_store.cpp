@@ -31,17 +31,28 @@ void VolumeStore::update(const ObjectVolumes& given, const Parallel& parallel) {
   boxes_.resize(std::max(given_count_, known_count));
   if (has_spheres_) spheres_.resize(boxes_.size());
   if (wanted_.has_kinds()) kinds_.resize(boxes_.size());
-  if (!given.dirty) {
-    compare_all(given, parallel);
-  } else {
-    listed_.assign(given.dirty->begin(), given.dirty->end());
+  changed_.clear();
+  if (given.dirty) {
+    changed_.assign(given.dirty->begin(), given.dirty->end());
     const auto [fewer, more] = std::minmax(given_count_, known_count);
-    for (std::size_t slot = fewer; slot < more; ++slot) listed_.push_back(static_cast<std::uint32_t>(slot));
-    std::sort(listed_.begin(), listed_.end());
-    std::erase_if(listed_, [&](std::uint32_t slot) { return !take_if_changed(given, slot); });
-    changed_count_ = listed_.size();
+    for (std::size_t slot = fewer; slot < more; ++slot) changed_.push_back(static_cast<std::uint32_t>(slot));
+    std::sort(changed_.begin(), changed_.end());
+    std::erase_if(changed_, [&](std::uint32_t slot) { return !take_if_changed(given, slot); });
+  } else {
+    constexpr std::size_t grain = 8192, block_size = 8;
+    is_changed_.resize(slot_count());
+    parallel.for_ranges(slot_count(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+      for (std::size_t block_end = begin; begin < end; begin = block_end) {
+        block_end = std::min(begin + block_size, end);
+        const bool is_same = is_same_block(given, begin, block_end);
+        for (std::size_t slot = begin; slot < block_end; ++slot)
+          is_changed_[slot] = !is_same && take_if_changed(given, static_cast<std::uint32_t>(slot)) ? 1 : 0;
+      }
+    });
+    for (std::uint32_t slot = 0; slot < slot_count(); ++slot)
+      if (is_changed_[slot] != 0) changed_.push_back(slot);
   }
-  revision_ += changed_count_ != 0;
+  revision_ += changed_.empty() ? 0 : 1;
 }
 
 /// A volume whose kind has no partner is empty.
@@ -76,32 +87,6 @@ bool VolumeStore::is_same_block(const ObjectVolumes& given, std::size_t begin, s
   if (wanted_.has_kinds() && !is_same_range(given.kinds, kinds_, begin, end)) return false;
   return has_spheres_ ? is_same_range(given.spheres, spheres_, begin, end)
                       : is_same_range(given.boxes, boxes_, begin, end);
-}
-
-void VolumeStore::compare_all(const ObjectVolumes& given, const Parallel& parallel) {
-  constexpr std::size_t chunk_size = 8192, block_size = 8;
-  const std::size_t slots = slot_count(), chunk_count = (slots + chunk_size - 1) / chunk_size;
-  listed_.resize(slots);
-  chunk_sizes_.resize(chunk_count);
-  parallel.for_ranges(chunk_count, 1, [&](std::size_t first, std::size_t last, std::uint32_t) {
-    for (std::size_t chunk = first; chunk < last; ++chunk) {
-      std::size_t count = 0;
-      const std::size_t begin = chunk * chunk_size, end = std::min(begin + chunk_size, slots);
-      for (std::size_t block = begin; block < end; block += block_size) {
-        const std::size_t block_end = std::min(block + block_size, end);
-        if (is_same_block(given, block, block_end)) continue;
-        for (std::size_t slot = block; slot < block_end; ++slot)
-          if (take_if_changed(given, static_cast<std::uint32_t>(slot)))
-            listed_[begin + count++] = static_cast<std::uint32_t>(slot);
-      }
-      chunk_sizes_[chunk] = count;
-    }
-  });
-  changed_count_ = 0;
-  for (std::size_t chunk = 0; chunk < chunk_count; ++chunk) {
-    std::copy_n(listed_.data() + chunk * chunk_size, chunk_sizes_[chunk], listed_.data() + changed_count_);
-    changed_count_ += chunk_sizes_[chunk];
-  }
 }
 
 }  // namespace supple

@@ -89,7 +89,7 @@ class VolumeStore {
   /// O(slots), or O(dirty log dirty) with a dirty list.
   void update(const ObjectVolumes& given, const Parallel& parallel);
   /// Slots that changed, ascending.
-  std::span<const std::uint32_t> changed() const { return {listed_.data(), changed_count_}; }
+  std::span<const std::uint32_t> changed() const { return changed_; }
   /// The number of updates that found changes.
   std::uint64_t revision() const { return revision_; }
 
@@ -110,7 +110,6 @@ class VolumeStore {
   bool take_kind_if_changed(const ObjectVolumes& given, std::uint32_t slot);
   bool take_if_changed(const ObjectVolumes& given, std::uint32_t slot);
   bool is_same_block(const ObjectVolumes& given, std::size_t begin, std::size_t end) const;
-  void compare_all(const ObjectVolumes& given, const Parallel& parallel);
 
   bool has_spheres_;
   WantedKinds wanted_;
@@ -119,9 +118,8 @@ class VolumeStore {
   std::vector<Aabb> boxes_;
   std::vector<BoundingSphere> spheres_;
   std::vector<std::uint8_t> kinds_;  // empty unless kinds are wanted
-  std::vector<std::uint32_t> listed_;
-  std::size_t changed_count_ = 0;
-  std::vector<std::size_t> chunk_sizes_;
+  std::vector<std::uint32_t> changed_;
+  std::vector<std::uint8_t> is_changed_;  // per slot, without a dirty list
 };
 
 }  // namespace supple

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <tuple>
+
+#include "core/bucket_sort.hpp"
 
 namespace supple {
 namespace {
@@ -14,28 +17,22 @@ struct Side {
   std::uint32_t place;
 };
 
-/// Sorts by counting on the smaller vertex, which leaves short runs to sort by the larger vertex.
-std::vector<Side> sorted_sides(std::span<const Triangle> triangles, std::uint32_t vertex_count) {
-  const auto side = [&](std::uint32_t triangle, std::uint32_t corner) {
-    const std::uint32_t p = triangles[triangle][corner], q = triangles[triangle][(corner + 1) % 3];
-    return Side{{std::min(p, q), std::max(p, q)}, 3 * triangle + corner};
-  };
-  std::vector<std::uint32_t> next(std::size_t{vertex_count} + 1, 0);
-  const auto for_each_side = [&](auto&& visit) {
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-      for (std::uint32_t corner = 0; corner < 3; ++corner) visit(side(t, corner));
-    }
-  };
-  for_each_side([&](const Side& s) { ++next[s.edge[0] + 1]; });
-  for (std::uint32_t v = 0; v < vertex_count; ++v) next[v + 1] += next[v];
-  std::vector<Side> sides(3 * triangles.size());
-  for_each_side([&](const Side& s) { sides[next[s.edge[0]]++] = s; });
-  for (std::uint32_t v = 0; v < vertex_count; ++v) {
-    std::sort(sides.begin() + (v == 0 ? 0 : next[v - 1]), sides.begin() + next[v],
-              [](const Side& p, const Side& q) {
-                return p.edge[1] != q.edge[1] ? p.edge[1] < q.edge[1] : p.place < q.place;
-              });
-  }
+std::vector<Side> sorted_sides(std::span<const Triangle> triangles) {
+  std::vector<Side> sides;
+  BucketSort().sort(
+      [&](const auto& visit) {
+        for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+          for (std::uint32_t corner = 0; corner < 3; ++corner) {
+            const auto [p, q] = std::minmax(triangles[t][corner], triangles[t][(corner + 1) % 3]);
+            visit(Side{{p, q}, 3 * t + corner});
+          }
+        }
+      },
+      [](const Side& side) {
+        return SortKey{0, side.edge[0]};
+      },
+      [](const Side& p, const Side& q) { return std::tie(p.edge, p.place) < std::tie(q.edge, q.place); },
+      Parallel(1), sides);
   return sides;
 }
 
@@ -67,7 +64,7 @@ SurfaceElements::SurfaceElements(const ObjectOctree& octree) {
     first_vertex_.push_back(
         std::max({first_vertex_.back(), triangle[0] + 1, triangle[1] + 1, triangle[2] + 1}));
   }
-  const std::vector<Side> sides = sorted_sides(triangles, vertex_count());
+  const std::vector<Side> sides = sorted_sides(triangles);
   std::vector<std::uint8_t> is_first(sides.size(), 0);
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < sides.size(); ++i) {

@@ -179,7 +179,7 @@ TEST(DistanceKernels, NumbersHaveTheBitsOfTheScalarFunction) {
       }
       for_each_target([&](const char* target) {
         DistanceNumbersBlock numbers;
-        compute_distance_numbers(points, members.size(), kind, numbers);
+        compute_distance_numbers(points, members.size(), kind, DistanceAccuracy::full, numbers);
         for (std::size_t m = 0; m < members.size(); ++m) {
           const ElementPoints& elements = block.elements[members[m]];
           bool used_exact = false;

@@ -349,7 +349,7 @@ TEST(FirstImpactAtStart, IsPositiveWhereElementsAreApart) {
   }
 }
 
-/// Where the kernel decides, a pair has the result of the scalar search, in a block of any size and on every
+/// Where the kernel decides, a pair has the same result alone and in a block of any size, on every
 /// instruction set.
 TEST_P(FirstImpact, IsTheSameForBlocksOfPairs) {
   RandomNumbers random(7);

@@ -1,4 +1,4 @@
-#include "answers/bucket_sort.hpp"
+#include "core/bucket_sort.hpp"
 
 #include <gtest/gtest.h>
 

@@ -21,6 +21,8 @@ struct PointsBlock {
     points[vertex][1][pair] = point.y;
     points[vertex][2][pair] = point.z;
   }
+  /// Sets what `compute_distance_numbers` needs of two features.
+  void set_features(std::size_t pair, const ElementPoints& elements, const ClosestFeatures& features);
 };
 
 /// What `classify` says about a pair: the closest features of elements within the distance by their number in
@@ -54,9 +56,10 @@ struct DistanceNumbersBlock {
 /// the first three.
 enum class FeaturePair : std::uint8_t { vertices, vertex_edge, vertex_face, edges };
 
-/// Computes the numbers of `count` pairs of features, to the bits of `distance_of` with full accuracy. Takes
-/// about 30 ns a pair.
+FeaturePair feature_pair_of(const ElementPoints& elements, const ClosestFeatures& features);
+
+/// Computes the numbers of `count` pairs of features. Takes about 30 ns a pair.
 void compute_distance_numbers(const PointsBlock& block, std::size_t count, FeaturePair kind,
-                              DistanceNumbersBlock& numbers);
+                              DistanceAccuracy accuracy, DistanceNumbersBlock& numbers);
 
 }  // namespace supple

@@ -1,8 +1,8 @@
 // The closest points of two elements lie inside both, or on the border of one of them. Signs of polynomials
 // in the coordinates decide the first. Otherwise the closest of all pairs of a vertex and an edge counts,
-// which a comparison of fractions finds. The same code runs on three kinds of numbers: on doubles with error
-// bounds, and where these cannot decide on integers, to find the features; on pairs of doubles, or on
-// integers again, to compute the distance, the weights and the direction.
+// which a comparison of fractions finds. The same code runs on two kinds of numbers to find the features: on
+// doubles with error bounds, and where these cannot decide on integers. A kernel with pairs of doubles, or
+// integers again, compute the distance, the weights and the direction.
 
 #include "contact/distance/element_distance.hpp"
 
@@ -12,6 +12,7 @@
 #include <string>
 #include <tuple>
 
+#include "contact/distance/distance_kernels.hpp"
 #include "contact/distance/element_numbers.hpp"
 #include "core/error.hpp"
 #include "geometry/numbers/quotient.hpp"
@@ -131,92 +132,11 @@ class FeatureSearch {
   bool has_best_ = false, is_known_ = true;
 };
 
-/// The squared distance is `squared` / `divisor`, the weights are `along[i]` / `divisor`.
-template <class Number>
-struct QuotientNumbers {
-  Number squared, divisor;
-  std::array<Number, 2> along{}, rest{};  ///< `rest[0]` also leaves out `along[1]` for a face
-  Vector<Number> direction;               ///< from the edge to the vertex, or from b to a
-};
-
-template <class Numbers>
-auto numbers_of(const Numbers& numbers, const Features& features, bool are_edges) {
-  using Number = typename Numbers::Number;
-  QuotientNumbers<Number> result;
-  if (features.kind == Features::Kind::interiors) {
-    const InteriorNumbers<Number> n(numbers, are_edges);
-    result.squared = n.volume * n.volume;
-    result.divisor = n.whole;
-    result.along = {n.along_u, n.along_v};
-    result.rest = {are_edges ? n.whole - n.along_u : n.whole - n.along_u - n.along_v, n.whole - n.along_v};
-    for (std::size_t axis = 0; axis < 3; ++axis) result.direction[axis] = n.normal[axis] * n.volume;
-  } else if (features.kind == Features::Kind::vertex_edge) {
-    const VertexEdgeNumbers<Number> n(numbers, features.vertex, features.edge);
-    result.squared = n.squared_moment();
-    result.divisor = n.whole;
-    result.along[0] = n.along;
-    result.rest[0] = n.whole - n.along;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      result.direction[axis] = n.to_vertex[axis] * n.whole - n.edge[axis] * n.along;
-  } else {
-    result.direction = numbers.difference(features.vertex, features.edge[0]);
-    result.squared = dot(result.direction, result.direction);
-    result.divisor = numbers.one();
-  }
-  return result;
-}
-
 Vec3d direction_of(const Vec3d& v) {
   const double size = largest_magnitude(v);
   if (!(size > 0)) return {};
   const Vec3d unit = std::ldexp(1.0, -std::ilogb(size)) * v;
   return (1 / std::sqrt(supple::dot(unit, unit))) * unit;
-}
-
-/// Pairs of doubles have a relative error below 2^-96 of the magnitudes of all terms. Lengths are between
-/// 2^-60 and 2^60 here. With full accuracy, the sines of all angles are above 2^-40, so all results have a
-/// relative error below 2^-53. With rough accuracy, those at elements that nearly touch are above 2^-68, and
-/// the error is below 2^-26. Returns nothing otherwise.
-std::optional<DistanceNumbers> rounded_by_pairs(const ElementPoints& elements, const Features& features,
-                                                DistanceAccuracy accuracy) {
-  const auto vector = [&](std::size_t i, std::size_t j) { return elements.points[i] - elements.points[j]; };
-  const auto squared = [](const Vec3d& v) { return supple::dot(v, v); };
-  const auto in_range = [](double square) { return square > 0x1p-120 && square < 0x1p120; };
-  const bool is_full = accuracy == DistanceAccuracy::full;
-  constexpr double least = 0x1p-80;
-  double magnitude = 0;  // of the terms of the squared distance times its divisor
-  if (features.kind == Features::Kind::vertices) {
-    if (!in_range(squared(vector(features.vertex, features.edge[0])))) return {};
-  } else if (features.kind == Features::Kind::vertex_edge) {
-    const Vec3d w = vector(features.vertex, features.edge[0]), e = vector(features.edge[1], features.edge[0]);
-    const double ww = squared(w), ee = squared(e);
-    magnitude = ww * ee;
-    if (!in_range(ww) || !in_range(ee)) return {};
-    if (is_full && !(squared(supple::cross(w, e)) > least * magnitude)) return {};
-  } else {
-    const bool are_edges = elements.count_a == 2;
-    const Vec3d u = are_edges ? vector(1, 0) : vector(2, 1), v = are_edges ? vector(3, 2) : vector(3, 1);
-    const Vec3d w = are_edges ? vector(0, 2) : vector(0, 1);
-    const double uu = squared(u), vv = squared(v), ww = squared(w);
-    magnitude = uu * vv * ww;
-    if (!in_range(uu) || !in_range(vv) || !in_range(ww)) return {};
-    const Vec3d n = supple::cross(u, v);
-    const double volume = supple::dot(n, w);
-    if (is_full ? !(volume * volume > least * magnitude) : !(squared(n) > least * uu * vv)) return {};
-  }
-  const auto numbers = numbers_of(DoubleDoubleNumbers(elements), features, elements.count_a == 2);
-  if (!is_full && !(static_cast<double>(numbers.squared) > 0x1p-136 * magnitude)) return {};
-  const double divisor(numbers.divisor);
-  DistanceNumbers result;
-  result.distance = std::sqrt(static_cast<double>(numbers.squared) / divisor);
-  for (std::size_t i = 0; i < 2; ++i) {
-    result.along[i] = static_cast<double>(numbers.along[i]) / divisor;
-    result.rest[i] = static_cast<double>(numbers.rest[i]) / divisor;
-  }
-  const auto& d = numbers.direction;
-  result.direction =
-      direction_of({static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2])});
-  return result;
 }
 
 Vec3d rounded_direction(const Vector<UnboundedInteger>& v) {
@@ -250,16 +170,40 @@ Vec3d direction_across(const IntegerNumbers& numbers, const ElementPoints& eleme
   return {1, 0, 0};
 }
 
+/// The squared distance is `squared` / `divisor`, the weights are `along[i]` / `divisor`.
 DistanceNumbers rounded_by_integers(const IntegerNumbers& numbers, const ElementPoints& elements,
                                     const Features& features) {
-  const auto exact = numbers_of(numbers, features, elements.count_a == 2);
-  DistanceNumbers result;
-  result.distance = Quotient(exact.squared, exact.divisor).square_root(numbers.lowest());
-  for (std::size_t i = 0; i < 2; ++i) {
-    result.along[i] = Quotient(exact.along[i], exact.divisor).value();
-    result.rest[i] = Quotient(exact.rest[i], exact.divisor).value();
+  UnboundedInteger squared, divisor = 1;
+  std::array<UnboundedInteger, 2> along{}, rest{};
+  Vector<UnboundedInteger> direction;
+  if (features.kind == Features::Kind::interiors) {
+    const bool are_edges = elements.count_a == 2;
+    const InteriorNumbers<UnboundedInteger> n(numbers, are_edges);
+    squared = n.volume * n.volume;
+    divisor = n.whole;
+    along = {n.along_u, n.along_v};
+    rest = {n.whole - n.along_u, n.whole - n.along_v};
+    if (!are_edges) rest[0] -= n.along_v;
+    for (std::size_t axis = 0; axis < 3; ++axis) direction[axis] = n.normal[axis] * n.volume;
+  } else if (features.kind == Features::Kind::vertex_edge) {
+    const VertexEdgeNumbers<UnboundedInteger> n(numbers, features.vertex, features.edge);
+    squared = n.squared_moment();
+    divisor = n.whole;
+    along[0] = n.along;
+    rest[0] = n.whole - n.along;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      direction[axis] = n.to_vertex[axis] * n.whole - n.edge[axis] * n.along;
+  } else {
+    direction = numbers.difference(features.vertex, features.edge[0]);
+    squared = dot(direction, direction);
   }
-  result.direction = rounded_direction(exact.direction);
+  DistanceNumbers result;
+  result.distance = Quotient(squared, divisor).square_root(numbers.lowest());
+  for (std::size_t i = 0; i < 2; ++i) {
+    result.along[i] = Quotient(along[i], divisor).value();
+    result.rest[i] = Quotient(rest[i], divisor).value();
+  }
+  result.direction = rounded_direction(direction);
   return result;
 }
 
@@ -277,6 +221,21 @@ std::optional<ElementDistance> checked(const ElementPoints& elements, double max
 }
 
 }  // namespace
+
+void PointsBlock::set_features(std::size_t pair, const ElementPoints& elements,
+                               const ClosestFeatures& features) {
+  const bool are_interiors = features.kind == ClosestFeatures::Kind::interiors;
+  const std::array<std::uint8_t, 4> used =
+      are_interiors ? std::array<std::uint8_t, 4>{0, 1, 2, 3}
+                    : std::array<std::uint8_t, 4>{features.vertex, features.edge[0], features.edge[1], 0};
+  for (std::size_t i = 0; i < 4; ++i) set(i, pair, elements.points[used[i]]);
+}
+
+FeaturePair feature_pair_of(const ElementPoints& elements, const ClosestFeatures& features) {
+  if (features.kind == ClosestFeatures::Kind::vertices) return FeaturePair::vertices;
+  if (features.kind == ClosestFeatures::Kind::vertex_edge) return FeaturePair::vertex_edge;
+  return elements.count_a == 2 ? FeaturePair::edges : FeaturePair::vertex_face;
+}
 
 std::optional<ClosestFeatures> closest_features_within(const ElementPoints& elements, double max_distance,
                                                        bool& used_exact) {
@@ -296,8 +255,11 @@ std::optional<ClosestFeatures> closest_features_within(const ElementPoints& elem
 
 ElementDistance distance_of(const ElementPoints& elements, const ClosestFeatures& features, bool& used_exact,
                             DistanceAccuracy accuracy) {
-  if (const auto numbers = rounded_by_pairs(elements, features, accuracy))
-    return distance_of(elements, features, *numbers);
+  PointsBlock block;
+  DistanceNumbersBlock numbers;
+  block.set_features(0, elements, features);
+  compute_distance_numbers(block, 1, feature_pair_of(elements, features), accuracy, numbers);
+  if (numbers.is_valid[0] != 0) return distance_of(elements, features, numbers.at(0));
   used_exact = true;
   const IntegerNumbers integers(elements, any_distance);
   ElementDistance result = distance_of(elements, features, rounded_by_integers(integers, elements, features));

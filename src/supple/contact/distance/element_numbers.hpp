@@ -7,7 +7,6 @@
 
 #include "contact/distance/element_distance.hpp"
 #include "geometry/numbers/bounded_double.hpp"
-#include "geometry/numbers/double_double.hpp"
 #include "geometry/numbers/number_vector.hpp"
 #include "geometry/numbers/wide_integer.hpp"
 
@@ -28,22 +27,6 @@ class BoundedNumbers {
   static Number number(double value) { return {value, 0}; }
   static Number one() { return {1, 0}; }
   static int sign_of(const Number& n) { return supple::sign_of(n); }
-
- private:
-  const std::array<Vec3d, 4>& points_;
-};
-
-/// As pairs of doubles.
-class DoubleDoubleNumbers {
- public:
-  using Number = DoubleDouble;
-
-  explicit DoubleDoubleNumbers(const ElementPoints& elements) : points_(elements.points) {}
-  std::array<Number, 3> difference(std::size_t i, std::size_t j) const {
-    const Vec3d &p = points_[i], &q = points_[j];
-    return {exact_sum(p.x, -q.x), exact_sum(p.y, -q.y), exact_sum(p.z, -q.z)};
-  }
-  static Number one() { return Number(1); }
 
  private:
   const std::array<Vec3d, 4>& points_;

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <span>
 
-#include "contact/impact/coplanar_times.hpp"
 #include "contact/impact/root_search.hpp"
+#include "contact/intersection/coplanar_search.hpp"
 #include "geometry/numbers/integer_points.hpp"
 
 namespace supple {
@@ -333,8 +333,11 @@ std::optional<TimeBracket> exact_first_contact(const ElementMotion& motion) {
   return search_contact(motion, false);
 }
 std::optional<TimeBracket> exact_next_contact(const ElementMotion& motion) {
-  const VolumePolynomial volume(relative_motion(motion));
-  return volume.never_or_always_zero_after_start() ? std::nullopt : search_contact(motion, true);
+  MotionBlock block;
+  CoplanarSearch coplanar;
+  block.set(0, relative_motion(motion));
+  search_coplanar_times(block, 1, motion.are_edges, coplanar);
+  return coplanar.clear_after_start != 0 ? std::nullopt : search_contact(motion, true);
 }
 
 }  // namespace supple

@@ -3,93 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include "contact/distance/closest_points.hpp"
-#include "contact/impact/coplanar_times.hpp"
-#include "geometry/plane_filter.hpp"
+#include "contact/intersection/coplanar_search.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
 
 using Outcome = ImpactSearch::Outcome;
-
-/// Greatest magnitudes over the step of a vector that moves linearly, and of its change.
-struct Extent {
-  double size, change;
-
-  Extent(const Vec3d& start, const Vec3d& end)
-      : size(std::max(largest_magnitude(start), largest_magnitude(end))),
-        change(largest_magnitude(end - start)) {}
-};
-
-enum class Place : std::uint8_t { inside, outside, unclear };
-
-/// Where a common point of the elements would lie at any time within [low, high].
-///
-/// With n = u × w, m = alpha u + beta w implies (m × w) · n = alpha n² and (u × m) · n = beta n², also where
-/// n is 0. Each of these and n² is a sum of twelve products of four coordinates. At the middle of the
-/// interval at most 20 roundings take part: three for each factor and eight for the rest. Towards the ends a
-/// value changes by at most half the interval times twelve times the product with one factor replaced by its
-/// change.
-Place place_in_domain(const RelativeMotion& motion, double low, double high) {
-  const Extent em(motion.start.m, motion.end.m), eu(motion.start.u, motion.end.u),
-      ew(motion.start.w, motion.end.w);
-  const double drift = 12 * ((high - low) / 2 + 0x1p-53);
-  constexpr double rounding = 0x1p-44;  // above 12 · 20 · 2^-53
-  constexpr double underflow = 0x1p-700;
-  const double uw = eu.size * ew.size;
-  const double uw_change = eu.change * ew.size + eu.size * ew.change;
-  const double mw_change = em.change * ew.size + em.size * ew.change;
-  const double um_change = eu.change * em.size + eu.size * em.change;
-  const double alpha_error = rounding * uw * em.size * ew.size +
-                             drift * (uw_change * em.size * ew.size + uw * mw_change) + underflow;
-  const double beta_error = rounding * uw * em.size * eu.size +
-                            drift * (uw_change * em.size * eu.size + uw * um_change) + underflow;
-  const double n_error = rounding * uw * uw + drift * 2 * uw * uw_change + underflow;
-
-  const auto [m, u, w] = places_at(motion, low + (high - low) / 2);
-  const Vec3d n = cross(u, w);
-  const double alpha = dot(cross(m, w), n), beta = dot(cross(u, m), n), one = dot(n, n);
-  // Distances from the borders of the domain, with error bounds.
-  const std::array<Filtered, 4> square{{{alpha, alpha_error},
-                                        {beta, beta_error},
-                                        {one - alpha, alpha_error + n_error},
-                                        {one - beta, beta_error + n_error}}};
-  const std::array<Filtered, 3> triangle{{{alpha, alpha_error},
-                                          {beta, beta_error},
-                                          {one - alpha - beta, 2 * (alpha_error + beta_error + n_error)}}};
-  const std::span<const Filtered> borders =
-      motion.is_square ? std::span<const Filtered>(square) : std::span<const Filtered>(triangle);
-  bool inside = one > n_error;
-  for (const Filtered& border : borders) {
-    if (border.value < -border.bound) return Place::outside;
-    inside = inside && border.value > border.bound;
-  }
-  return inside ? Place::inside : Place::unclear;
-}
-
-/// Searches the times at which the four vertices lie in one plane.
-Outcome search_coplanar_times(const RelativeMotion& motion, double& time) {
-  const VolumePolynomial volume(motion);
-  if (!volume.in_range()) return Outcome::unsure;
-  if (volume.never_zero(0, 1)) return Outcome::apart;
-  double passed = 0;
-  const VolumePolynomial::Intervals intervals = volume.near_zeros();
-  for (const auto& [low, high] : intervals.all()) {
-    if (!volume.never_zero(passed, low)) return Outcome::unsure;
-    const Place place = place_in_domain(motion, low, high);
-    if (place == Place::unclear) return Outcome::unsure;
-    if (place == Place::inside) {
-      time = low;
-      const bool is_short = high - low <= std::min(toi_tolerance / 2, toi_relative_tolerance / 2 * low);
-      return is_short && volume.changes_sign(low, high) ? Outcome::touching : Outcome::unsure;
-    }
-    passed = high;
-  }
-  return volume.never_zero(passed, 1) ? Outcome::apart : Outcome::unsure;
-}
 
 /// The elements at one time: their differences, and where they are closest.
 struct Moment {
@@ -238,8 +160,12 @@ DistanceBounds distance_bounds(const RelativeMotion& motion, double time) {
 ImpactSearch search_impact(const RelativeMotion& motion, double separation) {
   ImpactSearch search;
   if (separation == 0) {
-    search.outcome = search_coplanar_times(motion, search.time);
-    if (search.outcome != Outcome::unsure) return search;
+    MotionBlock block;
+    CoplanarSearch coplanar;
+    block.set(0, motion);
+    search_coplanar_times(block, 1, motion.is_square, coplanar);
+    if (coplanar.apart != 0) return {Outcome::apart};
+    if (coplanar.touching != 0) return {Outcome::touching, coplanar.times[0]};
   }
   const double part = wild_part(motion);
   if (part < 1) {

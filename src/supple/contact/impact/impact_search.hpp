@@ -17,7 +17,7 @@ struct ImpactSearch {
   double time = 0;
 };
 
-/// Error bounds prove every outcome, for all finite coordinates. `separation` ≥ 0. Takes about 0.3 µs.
+/// Error bounds prove every outcome, for all finite coordinates. `separation` ≥ 0. Takes about 0.4 µs.
 ImpactSearch search_impact(const RelativeMotion& motion, double separation);
 
 RelativePlaces<double> places_at(const RelativeMotion& motion, double time);

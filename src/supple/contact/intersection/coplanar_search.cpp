@@ -14,9 +14,6 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The steps and the error bounds are those of coplanar_times.cpp and of impact_search.cpp, where they are
-// proven, for motions whose volume is clearly not 0 at both ends of the step and where it turns.
-
 using Tag = hn::CappedTag<double, 8>;
 using Doubles = hn::Vec<Tag>;
 using Mask = hn::Mask<Tag>;
@@ -41,8 +38,10 @@ HWY_INLINE Doubles largest_magnitude(const Vector& v) {
 struct Places {
   Vector m, u, w;
 
-  HWY_INLINE Places(const MotionBlock& block, std::size_t row, std::size_t first) {
-    const auto load = [&](std::size_t r) HWY_ATTR { return hn::Load(Tag(), block.row(row + r) + first); };
+  /// Zeros in lanes without a pair.
+  HWY_INLINE Places(const MotionBlock& block, std::size_t row, std::size_t first, Mask lanes) {
+    const auto load = [&](std::size_t r)
+                          HWY_ATTR { return hn::MaskedLoad(lanes, Tag(), block.row(row + r) + first); };
     m = {load(0), load(1), load(2)};
     u = {load(3), load(4), load(5)};
     w = {load(6), load(7), load(8)};
@@ -61,6 +60,7 @@ struct Coefficients {
     before = {{c[0], c01, c012, middle}};
     after = {{middle, c123, c23, c[3]}};
   }
+  /// Whether all values are on one side of 0 by more than `error`.
   HWY_INLINE Mask one_sign(Doubles error) const {
     const Doubles least = hn::Min(hn::Min(c[0], c[1]), hn::Min(c[2], c[3]));
     const Doubles most = hn::Max(hn::Max(c[0], c[1]), hn::Max(c[2], c[3]));
@@ -91,11 +91,21 @@ HWY_NOINLINE Mask part_has_one_sign(const Coefficients& part, Doubles error, Mas
   return proven;
 }
 
-/// `VolumePolynomial`
+/// The volume m · (u × w) of the four vertices over the step, a cubic polynomial. Elements can touch only
+/// where it is 0.
+///
+/// `error` bounds the error of all values, relative to the sum of the magnitudes, which bounds every
+/// coefficient:
+/// - a determinant of differences: 9 · 2^-53 (see plane_filter.hpp);
+/// - the sum of three determinants, divided by 3: 12 · 2^-53;
+/// - a value, or the coefficients of a part: two times three levels of 3 roundings, 18 · 2^-53 more.
+/// That is less than 2^-48 in all. Each of three halvings adds 9 · 2^-53, so 2^-47 covers everything.
+///
+/// Coordinates up to 2^100, which are `in_range`, do not overflow and lose at most 2^-970 by underflow.
 struct Volume {
   Coefficients bernstein;
   Doubles powers[4], error;
-  Mask in_range;
+  Mask in_range, always_zero;
 
   HWY_INLINE Volume(const Places& start, const Places& end) {
     const Vector n0 = cross<Tag>(start.u, start.w), n2 = cross<Tag>(end.u, end.w);
@@ -117,8 +127,18 @@ struct Volume {
                         hn::Add(hn::Mul(u.x, w.y), hn::Mul(u.y, w.x))};
     in_range = hn::Le(largest_magnitude(larger<Tag>(larger<Tag>(m, u), w)), set(0x1p100));
     error = hn::Add(hn::Mul(set(0x1p-47), dot<Tag>(m, minors)), set(0x1p-960));
+    const auto is_zero = [&](Doubles p, Doubles q) HWY_ATTR {
+      return hn::Or(hn::Eq(p, hn::Zero(Tag())), hn::Eq(q, hn::Zero(Tag())));
+    };
+    const auto has_no_term = [&](Doubles p, Doubles u1, Doubles w2, Doubles u2, Doubles w1) HWY_ATTR {
+      return hn::Or(is_zero(p, p), hn::And(is_zero(u1, w2), is_zero(u2, w1)));
+    };
+    always_zero =
+        hn::And(has_no_term(m.x, u.y, w.z, u.z, w.y),
+                hn::And(has_no_term(m.y, u.z, w.x, u.x, w.z), has_no_term(m.z, u.x, w.y, u.y, w.x)));
   }
 
+  /// Values and slopes without error bounds.
   HWY_INLINE Doubles estimate(Doubles t) const {
     const Doubles square = hn::Add(hn::Mul(powers[3], t), powers[2]);
     return hn::Add(hn::Mul(hn::Add(hn::Mul(square, t), powers[1]), t), powers[0]);
@@ -144,13 +164,14 @@ struct Volume {
     return hn::Or(is_empty, part_has_one_sign<3>(part, error, hn::AndNot(is_empty, wanted)));
   }
 
+  /// Whether the values at both ends are proven to have different signs.
   HWY_INLINE Mask changes_sign(Doubles low, Doubles high) const {
     const Doubles first = value(low), last = value(high), zero = hn::Zero(Tag());
     return hn::And(hn::Gt(hn::Min(hn::Abs(first), hn::Abs(last)), error),
                    hn::Xor(hn::Gt(first, zero), hn::Gt(last, zero)));
   }
 
-  /// `zero_between` for the `wanted` lanes.
+  /// The zero in an interval over which the value is monotonic and changes its sign, for the `wanted` lanes.
   HWY_NOINLINE Doubles zero_between(Doubles low, Doubles high, Doubles at_low, Doubles at_high,
                                     Mask wanted) const {
     const Doubles zero = hn::Zero(Tag()), close = hn::Div(error, set(4));
@@ -172,9 +193,11 @@ struct Volume {
   }
 };
 
-/// The times between which the volume is monotonic: 0, the turning points within the step, and 1.
+/// The times between which the volume is monotonic: 0, the turning points within the step, and 1. Where there
+/// are fewer, the last are 1.
 struct Knots {
   Doubles times[4], values[4];
+  Mask turns[4];
 
   HWY_INLINE explicit Knots(const Volume& volume) {
     const Doubles zero = hn::Zero(Tag()), one = set(1);
@@ -189,15 +212,18 @@ struct Knots {
       return hn::And(has_two, hn::And(hn::Gt(t, zero), hn::Lt(t, one)));
     };
     const Mask first_inside = is_inside(first), second_inside = is_inside(second);
-    // Where there are fewer, the last are 1.
     times[0] = zero;
     times[1] = hn::IfThenElse(first_inside, first, hn::IfThenElse(second_inside, second, one));
     times[2] = hn::IfThenElse(hn::And(first_inside, second_inside), second, one);
     times[3] = one;
-    for (int i = 0; i < 4; ++i) values[i] = volume.estimate(times[i]);
+    for (int i = 0; i < 4; ++i) {
+      values[i] = volume.estimate(times[i]);
+      turns[i] = hn::And(hn::Gt(times[i], zero), hn::Lt(times[i], one));
+    }
   }
 };
 
+/// Greatest magnitudes over the step of a vector that moves linearly, and of its change.
 struct Extent {
   Doubles size, change;
 
@@ -206,7 +232,13 @@ struct Extent {
         change(largest_magnitude(subtract<Tag>(end, start))) {}
 };
 
-/// `place_in_domain`
+/// Where a common point of the elements would lie at any time within [low, high].
+///
+/// With n = u × w, m = alpha u + beta w implies (m × w) · n = alpha n² and (u × m) · n = beta n², also where
+/// n is 0. Each of these and n² is a sum of twelve products of four coordinates. At the middle of the
+/// interval at most 20 roundings take part: three for each factor and eight for the rest. Towards the ends a
+/// value changes by at most half the interval times twelve times the product with one factor replaced by its
+/// change.
 struct Place {
   Mask inside, outside;
 
@@ -214,7 +246,8 @@ struct Place {
     const Extent em(start.m, end.m), eu(start.u, end.u), ew(start.w, end.w);
     const Doubles half = hn::Div(hn::Sub(high, low), set(2));
     const Doubles drift = hn::Mul(set(12), hn::Add(half, set(0x1p-53)));
-    const Doubles rounding = set(0x1p-44), underflow = set(0x1p-700);
+    const Doubles rounding = set(0x1p-44);  // above 12 · 20 · 2^-53
+    const Doubles underflow = set(0x1p-700);
     const Doubles uw = hn::Mul(eu.size, ew.size);
     const auto change = [](const Extent& p, const Extent& q) HWY_ATTR {
       return hn::Add(hn::Mul(p.change, q.size), hn::Mul(p.size, q.change));
@@ -251,58 +284,104 @@ struct Place {
   }
 };
 
-HWY_INLINE void search_from(const MotionBlock& block, std::size_t first, bool is_square,
-                            CoplanarSearch& search) {
-  const Tag d;
-  const Doubles zero = hn::Zero(d), one = set(1);
-  const Places start(block, 0, first), end(block, 9, first);
-  const Volume volume(start, end);
-  Mask apart =
-      hn::And(volume.in_range, part_has_one_sign<3>(volume.bernstein, volume.error, volume.in_range));
-  const Knots knots(volume);
-  // Lanes in which the volume is clearly not 0 at any knot. Each sign change is then one simple root.
-  Mask open = hn::AndNot(apart, volume.in_range);
-  const Doubles twice_error = hn::Mul(set(2), volume.error);
-  for (int k = 0; k < 4; ++k) open = hn::And(open, hn::Gt(hn::Abs(knots.values[k]), twice_error));
-  Mask touching = hn::Lt(zero, zero);
-  Doubles passed = zero, time = zero, touched_until = zero;
-  for (int k = 0; k < 3; ++k) {
-    const Mask changes = hn::Xor(hn::Gt(knots.values[k], zero), hn::Gt(knots.values[k + 1], zero));
-    const Mask has_root = hn::And(open, changes), comes_later = hn::And(touching, changes);
-    const Mask wanted = hn::Or(has_root, comes_later);
-    if (hn::AllFalse(d, wanted)) continue;
-    const Doubles t =
-        volume.zero_between(knots.times[k], knots.times[k + 1], knots.values[k], knots.values[k + 1], wanted);
-    const Doubles reach = hn::Div(twice_error, hn::Abs(volume.slope(t)));
+/// Goes through the short closed intervals of time near zeros of the volume, ascending, until one of them
+/// decides.
+class Search {
+ public:
+  HWY_INLINE Search(const MotionBlock& block, std::size_t first, std::size_t count, bool is_square)
+      : wanted_(hn::FirstN(Tag(), count)),
+        start_(block, 0, first, wanted_),
+        end_(block, 9, first, wanted_),
+        volume_(start_, end_),
+        is_square_(is_square) {
+    const Doubles zero = hn::Zero(Tag());
+    wanted_ = hn::And(volume_.in_range, wanted_);
+    apart_ = hn::And(wanted_, part_has_one_sign<3>(volume_.bernstein, volume_.error, wanted_));
+    open_ = hn::AndNot(apart_, wanted_);
+    touching_ = has_interval_ = hn::Lt(zero, zero);
+    passed_ = time_ = low_ = high_ = zero;
+  }
+
+  HWY_INLINE void run() {
+    const Doubles zero = hn::Zero(Tag()), twice_error = hn::Mul(set(2), volume_.error);
+    const Knots knots(volume_);
+    for (int k = 0; k < 4 && !hn::AllFalse(Tag(), open_); ++k) {
+      const Doubles t = knots.times[k], here = knots.values[k];
+      const Mask is_near = hn::And(open_, hn::Le(hn::Abs(here), twice_error));
+      if (!hn::AllFalse(Tag(), is_near)) {
+        const Doubles curvature = hn::Add(hn::Mul(hn::Mul(set(3), volume_.powers[3]), t), volume_.powers[2]);
+        const Doubles of_turn = hn::Mul(set(4), hn::Sqrt(hn::Div(volume_.error, hn::Abs(curvature))));
+        const Doubles of_slope = hn::Div(hn::Mul(set(4), volume_.error), hn::Abs(volume_.slope(t)));
+        add(is_near, t, hn::IfThenElse(knots.turns[k], of_turn, of_slope));
+      }
+      if (k == 3) break;
+      const Doubles next = knots.values[k + 1];
+      const Mask changes = hn::And(open_, hn::Xor(hn::Gt(here, zero), hn::Gt(next, zero)));
+      if (hn::AllFalse(Tag(), changes)) continue;
+      const Doubles root = volume_.zero_between(t, knots.times[k + 1], here, next, changes);
+      add(changes, root, hn::Div(twice_error, hn::Abs(volume_.slope(root))));
+    }
+    decide(hn::And(open_, has_interval_));
+    if (!hn::AllFalse(Tag(), open_))
+      apart_ = hn::Or(apart_, hn::And(open_, volume_.never_zero(passed_, set(1), open_)));
+  }
+
+  HWY_INLINE void store(std::size_t first, CoplanarSearch& search) const {
+    const Tag d;
+    hn::StoreU(time_, d, search.times + first);
+    search.apart |= mask_bits(d, apart_) << first;
+    search.touching |= mask_bits(d, touching_) << first;
+    const auto& c = volume_.bernstein.c;
+    const Mask has_sign_after_start = Coefficients{{c[1], c[1], c[2], c[3]}}.one_sign(volume_.error);
+    const Mask is_clear = hn::And(wanted_, hn::Or(volume_.always_zero, has_sign_after_start));
+    search.clear_after_start |= mask_bits(d, is_clear) << first;
+  }
+
+ private:
+  /// Adds an interval around t. It joins the last one where they overlap.
+  HWY_INLINE void add(Mask lanes, Doubles t, Doubles reach) {
+    // Only short intervals are useful. NaN gives the whole step.
+    const Doubles zero = hn::Zero(Tag()), one = set(1);
     const Doubles half = hn::IfThenElse(hn::Lt(reach, one), hn::Add(reach, set(0x1p-52)), one);
     const Doubles low = hn::Max(hn::Sub(t, half), zero), high = hn::Min(hn::Add(t, half), one);
-    // The scalar code merges the intervals of two roots that overlap.
-    touching = hn::AndNot(hn::AndNot(hn::Gt(low, touched_until), comes_later), touching);
-    const Place place(start, end, low, high, is_square);
-    const Mask is_clear = hn::And(hn::Lt(passed, low), volume.never_zero(passed, low, has_root));
-    const Doubles longest = hn::Min(set(toi_tolerance / 2), hn::Mul(set(toi_relative_tolerance / 2), low));
-    const Mask is_short = hn::Le(hn::Sub(high, low), longest);
-    const Mask touches =
-        hn::And(hn::And(has_root, is_clear), hn::AndNot(place.outside, hn::And(place.inside, is_short)));
-    const Mask now_touching = hn::And(touches, volume.changes_sign(low, high));
-    touching = hn::Or(touching, now_touching);
-    time = hn::IfThenElse(now_touching, low, time);
-    touched_until = hn::IfThenElse(now_touching, high, touched_until);
-    const Mask goes_on = hn::And(hn::And(has_root, is_clear), place.outside);
-    passed = hn::IfThenElse(goes_on, high, passed);
-    // All other lanes with a root are decided, or left to the scalar code.
-    open = hn::And(open, hn::Or(hn::Not(has_root), goes_on));
+    const Mask joins = hn::And(hn::And(lanes, has_interval_), hn::Ge(high_, low));
+    decide(hn::AndNot(joins, hn::And(lanes, has_interval_)));
+    low_ = hn::IfThenElse(joins, hn::Min(low_, low), hn::IfThenElse(lanes, low, low_));
+    high_ = hn::IfThenElse(joins, hn::Max(high_, high), hn::IfThenElse(lanes, high, high_));
+    has_interval_ = hn::Or(has_interval_, lanes);
   }
-  if (!hn::AllFalse(d, open)) apart = hn::Or(apart, hn::And(open, volume.never_zero(passed, one, open)));
-  hn::StoreU(time, d, search.times + first);
-  search.apart |= mask_bits(d, apart) << first;
-  search.touching |= mask_bits(d, touching) << first;
-}
+
+  /// Decides by the last interval, or goes on after it where a common point would be outside.
+  HWY_NOINLINE void decide(Mask lanes) {
+    if (hn::AllFalse(Tag(), lanes)) return;
+    const Place place(start_, end_, low_, high_, is_square_);
+    const Mask is_clear = hn::And(lanes, volume_.never_zero(passed_, low_, lanes));
+    const Doubles longest = hn::Min(set(toi_tolerance / 2), hn::Mul(set(toi_relative_tolerance / 2), low_));
+    const Mask is_short = hn::Le(hn::Sub(high_, low_), longest);
+    const Mask touches = hn::And(hn::And(is_clear, hn::AndNot(place.outside, place.inside)),
+                                 hn::And(is_short, volume_.changes_sign(low_, high_)));
+    touching_ = hn::Or(touching_, touches);
+    time_ = hn::IfThenElse(touches, low_, time_);
+    const Mask goes_on = hn::And(is_clear, place.outside);
+    passed_ = hn::IfThenElse(goes_on, high_, passed_);
+    open_ = hn::And(open_, hn::Or(hn::Not(lanes), goes_on));
+  }
+
+  Mask wanted_;
+  Places start_, end_;
+  Volume volume_;
+  bool is_square_;
+  Mask open_, apart_, touching_, has_interval_;
+  Doubles passed_, time_, low_, high_;  // `low_` and `high_` are those of the last interval
+};
 
 void search_block(const MotionBlock& block, std::size_t count, bool is_square, CoplanarSearch& search) {
-  search.apart = search.touching = 0;
-  for (std::size_t first = 0; first < count; first += hn::Lanes(Tag()))
-    search_from(block, first, is_square, search);
+  search.apart = search.touching = search.clear_after_start = 0;
+  for (std::size_t first = 0; first < count; first += hn::Lanes(Tag())) {
+    Search part(block, first, count - first, is_square);
+    part.run();
+    part.store(first, search);
+  }
 }
 
 }  // namespace
@@ -326,9 +405,6 @@ void MotionBlock::set(std::size_t pair, const RelativeMotion& motion) {
 void search_coplanar_times(const MotionBlock& block, std::size_t count, bool is_square,
                            CoplanarSearch& search) {
   HWY_DYNAMIC_DISPATCH(search_block)(block, count, is_square, search);
-  const std::uint64_t asked = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
-  search.apart &= asked;
-  search.touching &= asked;
 }
 
 }  // namespace supple

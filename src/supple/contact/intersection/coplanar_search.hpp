@@ -17,20 +17,21 @@ class MotionBlock {
   const double* row(std::size_t index) const { return rows_[index]; }
 
  private:
-  alignas(64) double rows_[18][capacity] = {};
+  alignas(64) double rows_[18][capacity];
 };
 
 /// What floating point can prove at a glance about the first impacts of a block of pairs.
 struct CoplanarSearch {
   std::uint64_t apart = 0;     ///< bit i: pair i does not touch within the step
-  std::uint64_t touching = 0;  ///< bit i: pair i touches, first within the tolerances after `times[i]` > 0
+  std::uint64_t touching = 0;  ///< bit i: pair i touches, first within the tolerances after `times[i]`
+  /// Bit i: after the start, the volume that pair i spans is never 0, or always 0.
+  std::uint64_t clear_after_start = 0;
   double times[MotionBlock::capacity];
 };
 
 /// Searches the times at which the four vertices of the first `count` pairs lie in one plane, for elements
-/// without separation. Where a bit is set, `search_impact` has the same outcome and the same time. It decides
-/// the pairs with neither bit: degenerate ones, and those that touch near a border. The same bits on all
-/// instruction sets.
+/// without separation. `search_impact` decides the pairs that are neither apart nor touching here: degenerate
+/// ones, and those that touch near a border. The same bits on all instruction sets.
 void search_coplanar_times(const MotionBlock& block, std::size_t count, bool is_square,
                            CoplanarSearch& search);
 

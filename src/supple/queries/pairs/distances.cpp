@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broad_phase/pair_finder.hpp"
+#include "core/float_rounding.hpp"
 #include "geometry/vector.hpp"
 #include "queries/check_queries.hpp"
 #include "queries/queries.hpp"
@@ -122,26 +124,22 @@ bool Queries::any_contact(ObjectId a, ObjectId b, const CallLimits& limits) cons
 
 /// The pairs of objects whose boxes are within the distance, in canonical order.
 std::vector<Queries::NearObjects> Queries::near_objects(double max_distance) const {
-  std::vector<NearObjects> near;
-  std::vector<std::uint32_t> by_box;
-  for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
-    if (world_.at(slot) != nullptr && !world_[slot].box().empty()) by_box.push_back(slot);
-  }
-  const auto box_of = [&](std::uint32_t slot) -> const Aabb& { return world_[slot].box(); };
-  std::sort(by_box.begin(), by_box.end(), [&](std::uint32_t p, std::uint32_t q) {
-    return std::pair(box_of(p).min.x, p) < std::pair(box_of(q).min.x, q);
-  });
-  for (std::size_t i = 0; i < by_box.size(); ++i) {
-    const double last = double{box_of(by_box[i]).max.x} + max_distance,
-                 end = last + 0x1p-50 * std::fabs(last);
-    for (std::size_t k = i + 1; k < by_box.size() && !(box_of(by_box[k]).min.x > end); ++k) {
-      const auto [a, b] = std::minmax(by_box[i], by_box[k]);
-      if (may_be_within(box_of(a), box_of(b), max_distance) && world_.may_pair({a, b}))
-        near.push_back({.pair = {world_.id_of(a), world_.id_of(b)}});
+  std::vector<Aabb> boxes(world_.slot_count());
+  // Rounded sums keep the order of exact ones, so these overlap where two boxes are within the distance.
+  for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
+    if (world_.at(slot) == nullptr || world_[slot].box().empty()) continue;
+    const Aabb& box = world_[slot].box();
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes[slot].min[axis] = round_down(box.min[axis] - max_distance / 2);
+      boxes[slot].max[axis] = round_up(box.max[axis] + max_distance / 2);
     }
   }
-  std::sort(near.begin(), near.end(),
-            [](const NearObjects& p, const NearObjects& q) { return p.pair < q.pair; });
+  std::vector<NearObjects> near;
+  PairFinder finder(BroadPhaseMethod::sweep, BoundingVolume::aabb, {});
+  for (const IndexPair& pair : finder.find_pairs({.boxes = boxes}, world_.parallel)) {
+    if (may_be_within(world_[pair.a].box(), world_[pair.b].box(), max_distance) && world_.may_pair(pair))
+      near.push_back({.pair = {world_.id_of(pair.a), world_.id_of(pair.b)}});
+  }
   return near;
 }
 
