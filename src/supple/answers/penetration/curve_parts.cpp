@@ -145,7 +145,7 @@ double CurveParts::way_along(const Vec3d& normal, double limit) {
     const auto [a, b, bound] = stack_.back();
     stack_.pop_back();
     if (bound <= longest) continue;
-    if (bound <= rounding && longest > nothing) {
+    if (bound <= rounding && longest > 0) {
       longest = bound;
       continue;
     }
