@@ -92,15 +92,15 @@ inline constexpr std::array words<CurveKind>{"closed", "open", "branched"};
 /// other: sides that slide past each other do not count. A direction in which nothing is ahead counts only
 /// where all are such; the depth is then 0, as for surfaces that only touch.
 ///
-/// `normal` is the direction with the least depth of these: the outward normals of the faces of b, and the
-/// reverse of those of a, on which the curve lies (of more than twelve normals, those of at least an eighth
-/// of the curve); the direction of the curve's area, for other than closed curves that of their segments; and
-/// the shortest moves out of two or three of these faces at once, where no face alone leads out of a corner
-/// as soon. Where there are none, it is the mean direction of the contacts' normals by length. Contacts in
-/// which one triangle is nowhere behind the other only touch; their faces count where the curve has no other
-/// contacts. Of several directions with the same depth (within 2^-36), it is the one with the largest x, then
-/// y, then z component, by magnitude. So a small move changes the depth by little, but can change the normal.
-/// To exchange a and b reverses the normal, unless opposite directions have the same depth.
+/// `normal` has the least depth of these: the outward normals of the faces of b, and the reverse of those of
+/// a, on which the curve lies (of more than twelve, those of at least an eighth of the curve); the direction
+/// of the curve's area, or of its segments when it is not closed; and the shortest moves out of two or three
+/// of these faces at once, where no face alone is shorter. Where there are none, it is the mean direction of
+/// the contacts' normals by length. Contacts in which one triangle is nowhere behind the other only touch:
+/// their faces count where there are no others. Of several directions with the same depth (within 2^-36), it
+/// is the one with the largest x, then y, then z component, by magnitude. A depth of at most 2^-49 of the
+/// largest coordinate is rounding and can be too long. A small move can change the normal, but hardly the
+/// depth. To exchange a and b reverses the normal, unless opposite directions have the same depth.
 struct IntersectionCurve {
   ObjectId a, b;  ///< equal for a curve of an object with itself
   CurveKind kind = CurveKind::closed;

@@ -142,6 +142,19 @@ TEST(CurveDepth, IsZeroWhereBoxesOnlyTouch) {
 }
 
 /// The faces that the plate pierces have nothing ahead along its normal, but its edges inside the box have.
+/// Rounding moves vertices of flush faces in front of and behind the other face.
+TEST(CurveDepth, IsRoundingWhereTurnedBoxesOnlyTouch) {
+  const std::array<Vec3d, 3> axes{
+      {{2. / 3, 2. / 3, 1. / 3}, {-2. / 3, 1. / 3, 2. / 3}, {1. / 3, -2. / 3, 2. / 3}}};
+  const Box below{{0, 0, 0}, axes, 8}, above{axes[2] + axes[2], axes, 8};
+  const auto curves = curves_of(above.mesh(), below.mesh());
+  ASSERT_GT(curves.size(), 0u);
+  for (const IntersectionCurve& curve : curves) {
+    EXPECT_LE(curve.depth, 0x1p-48);
+    expect_near(curve.normal, axes[2], 0x1p-40);
+  }
+}
+
 TEST(CurveDepth, OfAPlateThroughABoxIsAcrossThePlate) {
   const Box box{{0.5, 0.5, 0.5}, {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}}};
   for (const double thickness : {1e-3, 1e-5, 1e-6, 1e-7, 1e-9}) {

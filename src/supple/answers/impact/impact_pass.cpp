@@ -196,7 +196,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
   const MovingObject& b = objects_[jobs_[job].b];
   const auto objects = objects_of(kind, a, b);
   const bool are_edges = kind == ElementPairKind::edge_edge, excludes = limit_.excludes_some();
-  const double distance = searched_distance(job), growth = growth_of_distance(job) + kept_distance(job);
+  const double distance = searched_distance(job), growth = growth_of_distance(job);
   std::array<std::array<std::uint32_t, 4>, block_size> vertices;
   for (; !candidates.empty() && !stop_.stop_requested();
        candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
@@ -204,7 +204,8 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
     for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
     const float latest = latest_of(job).load(std::memory_order_relaxed);
     fill(objects, std::span(vertices).first(part.size()), are_edges, latest, worker.block);
-    const float reach = round_up(distance + growth * latest);
+    const double kept = kept_distance(job, latest, worker.block, part.size());
+    const float reach = round_up(distance + growth * latest + kept);
     std::uint64_t left = may_touch(worker.block, part.size(), are_edges, reach);
     std::size_t count = 0;
     for (; left != 0; left &= left - 1) {
@@ -244,15 +245,16 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
   };
   for (std::size_t k = 0; k < count && !stop_.stop_requested(); ++k) {
     const OpenPair& pair = worker.open[k];
-    bool used_exact = false;
-    const auto impact = first_impact_after(search_of(k), pair.motion, pair.relative, options, used_exact);
-    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
-    if (!impact) continue;
-    if (search_ >= Search::longest && impact->touching_at_start && impact->start_distance == 0) {
+    const ImpactSearch found = search_of(k);
+    if (found.outcome == ImpactSearch::Outcome::apart) continue;
+    if (search_ >= Search::longest && found.time == 0 && touch_at_start(pair.motion)) {
       if (search_ == Search::longest && !touch_at_rest(pair.motion)) add_near(job, kind, pair, true, worker);
       continue;
     }
-    add_contact(job, kind, pair, *impact, worker);
+    bool used_exact = false;
+    const auto impact = first_impact_after(found, pair.motion, pair.relative, options, used_exact);
+    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+    if (impact) add_contact(job, kind, pair, *impact, worker);
   }
 }
 

@@ -146,10 +146,11 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   void start(const PassInput& input, std::span<const MovingObject> objects,
              const ImpactSearchOptions& options);
   ImpactOptions impact_of_job(std::uint32_t job) const;
-  /// The distance within which the pass searches, and what a safe step adds to it over the whole step: a
-  /// share of the largest approach.
+  /// The distance within which the pass searches, and what a safe step adds to it until a time: a share of
+  /// the largest approach, or of the largest distance at the start in a block of pairs.
   double searched_distance(std::uint32_t job) const;
-  double kept_distance(std::uint32_t job) const;
+  double kept_distance(std::uint32_t job, float latest, const RelativeMotionBlock& block,
+                       std::size_t count) const;
   double share_of_approach() const;
   /// By how much rounding may bring two vertices of the job nearer in a part of a step: `rounding_of_job`
   /// plus the part times `growth_of_rounding`.

@@ -35,6 +35,7 @@ namespace {
 
 /// Elements come nearer by more than about twice their size in steps of which a smaller part is small.
 constexpr double wild_part = 0.5;
+constexpr double very_wild = 0x1p-6;  // a smaller part is searched first
 
 /// The size of an object at the start, without what is not finite.
 double size_of(const MovingObject& object) {
@@ -55,7 +56,6 @@ SafeStep ImpactPass::find_safe_step(const PassInput& input, std::span<const Movi
                                     const std::optional<StepOptions>& step, const FirstOfAll& first_of_all) {
   start_steps(input, objects, options, step);
   SafeStep known{0, {}, true};
-  constexpr double very_wild = 0x1p-6;
   const double small = part_of_small_ways();
   // Processes would have to agree on the first part.
   for (const double until : {first_of_all || small > very_wild ? 1 : small, 1.0}) {
@@ -121,7 +121,11 @@ std::vector<ObjectStep> ImpactPass::find_safe_steps(const PassInput& input,
                                                     const ImpactSearchOptions& options,
                                                     const StepOptions& step) {
   start_steps(input, objects, options, step);
-  is_wild_ = part_of_small_ways() < wild_part;
+  const double small = part_of_small_ways();
+  is_wild_ = false;
+  const SafeStep known =
+      small > very_wild ? SafeStep{0, {}, true} : find_step_until(small, {}, input.parallel);
+  is_wild_ = small < wild_part;
   island_.resize(objects.size());
   std::iota(island_.begin(), island_.end(), 0u);
   if (const std::size_t count = std::max(objects.size(), jobs_.size()); latest_.size() < count)
@@ -145,13 +149,13 @@ std::vector<ObjectStep> ImpactPass::find_safe_steps(const PassInput& input,
   search_islands(between, input.parallel);
   prove_rounded_positions({}, input.parallel);
   if (stop_.stop_requested()) {
-    // All that move are one island, of the first of them.
+    // All that move are one island, of the first of them, with the step that is known.
     auto root = static_cast<std::uint32_t>(objects.size());
     safe_.assign(objects.size(), {1, {}, true});
     for (std::uint32_t object = 0; object < objects.size(); ++object) {
       const bool is_moving = objects[object].ways != nullptr && moves(object);
       if (is_moving) root = std::min(root, object);
-      if (is_moving) safe_[object].step = 0;
+      if (is_moving) safe_[object].step = known.stopped ? 0 : known.step;
       island_[object] = is_moving ? root : object;
     }
   }
@@ -347,9 +351,16 @@ double ImpactPass::share_of_approach() const {
   return search_ == Search::free ? (1 + 0x1p-40) / (1 - step_->keep) : 0;
 }
 
-double ImpactPass::kept_distance(std::uint32_t job) const {
-  const double share = share_of_approach();
-  return share > 0 ? share * largest_approach(job) * (1 + 0x1p-40) : 0;
+double ImpactPass::kept_distance(std::uint32_t job, float latest, const RelativeMotionBlock& block,
+                                 std::size_t count) const {
+  const double of_approach = share_of_approach() * latest;
+  if (of_approach == 0) return 0;
+  const double kept = of_approach * largest_approach(job) * (1 + 0x1p-40);
+  if (search_ != Search::safe_step) return kept;
+  double farthest = 0;
+  for (const auto& m : std::span(block.rows[RelativeMotionBlock::m]).first(count))
+    farthest = std::max(farthest, norm(Vec3d{m[0], m[1], m[2]}));
+  return std::min(kept, step_->keep * farthest * (1 + 0x1p-20) + std::numeric_limits<float>::min());
 }
 
 }  // namespace supple

@@ -152,11 +152,6 @@ void ContactRegions::add_neighbours(std::uint32_t v, const IsCut& is_cut, std::v
 }
 
 void ContactRegions::begin(std::uint32_t curve) {
-  constexpr std::uint32_t almost_all = 0xfffffff0;
-  if (stamp_ > almost_all) {
-    std::fill(state_.begin(), state_.end(), 0);
-    stamp_ = 0;
-  }
   stamp_ += 2;
   inside_.clear();
   beyond_.clear();

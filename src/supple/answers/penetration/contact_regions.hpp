@@ -97,8 +97,8 @@ class ContactRegions {
   std::vector<std::uint32_t> first_seed_, first_middle_;  // of each curve
   std::vector<std::uint8_t> marks_;                       // by vertex
   std::vector<std::uint32_t> marked_;
-  std::vector<std::uint32_t> state_;  // by vertex: `stamp_` when it was reached, one less in front
-  std::uint32_t stamp_ = 0;
+  std::vector<std::uint64_t> state_;  // by vertex: `stamp_` when it was reached, one less in front
+  std::uint64_t stamp_ = 0;
   std::vector<std::uint32_t> inside_, beyond_;
   std::vector<Vec3d> middles_;
 };

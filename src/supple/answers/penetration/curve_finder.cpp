@@ -193,13 +193,12 @@ void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& 
   const std::uint32_t number = curve_of_[members.front()];
   for (std::size_t side = 0; side < 2; ++side) {
     ContactRegions& region = regions_[side];
-    const SurfaceView& surface = side == 0 ? input_.a : input_.b;
     const bool other_is_solid = !input_.same_object && (side == 0 ? input_.b_is_solid : input_.a_is_solid);
     region.begin(number);
     // Contacts at corners of the other surface may tell nothing.
     for (std::size_t i = 0; i < n && other_is_solid && region.inside().empty(); ++i) {
-      for (const std::uint32_t v : surface.triangle(triangle_of(members[i], side))) {
-        if (region.is_open(v)) region.decide(v, way_out_.contains(1 - side, surface.position(v)));
+      for (const std::uint32_t v : surface_of(side).triangle(triangle_of(members[i], side))) {
+        if (region.is_open(v)) region.decide(v, way_out_.contains(1 - side, surface_of(side).position(v)));
       }
     }
     region.grow(number, other_is_solid ? all : many);
@@ -275,11 +274,10 @@ bool CurveFinder::only_touches(std::uint32_t i) const {
 /// front of it.
 bool CurveFinder::separates(std::size_t side, std::uint32_t face,
                             std::span<const std::uint32_t> members) const {
-  const std::array<SurfaceView, 2> surfaces{input_.a, input_.b};
-  const TrianglePoints plane = surfaces[side].corners(face);
+  const TrianglePoints plane = surface_of(side).corners(face);
   bool used_exact = false;
   const auto is_on_its_side = [&](std::uint32_t i, std::size_t of) {
-    const TrianglePoints corners = surfaces[of].corners(triangle_of(i, of));
+    const TrianglePoints corners = surface_of(of).corners(triangle_of(i, of));
     return std::all_of(corners.begin(), corners.end(), [&](const Vec3d& p) {
       const int height = orient3d(plane[0], plane[1], plane[2], p, used_exact);
       return of == side ? height <= 0 : height >= 0;
@@ -393,16 +391,15 @@ std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool si
 
 /// Finds on both surfaces what is behind each curve.
 void CurveFinder::link_regions() {
-  const std::array<SurfaceView, 2> surfaces{input_.a, input_.b};
   for (std::size_t side = 0; side < 2; ++side) {
-    regions_[side].start(surfaces[side]);
+    regions_[side].start(surface_of(side));
     for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
       // A curve whose sides are one has nothing behind it.
       if (is_one_sided_[members_[first_member_[curve_of_[i]]]] != 0) continue;
       const bool of_b = (side != 0) != is_turned(i);
       const std::uint32_t id = triangle_of(i, side);
-      const Triangle& triangle = surfaces[side].triangle(id);
-      const TrianglePoints other = surfaces[1 - side].corners(triangle_of(i, 1 - side));
+      const Triangle& triangle = surface_of(side).triangle(id);
+      const TrianglePoints other = surface_of(1 - side).corners(triangle_of(i, 1 - side));
       for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
         const std::uint32_t place = first_place(i) + k;
         const Feature& feature = of_b ? points_[place].on_b : points_[place].on_a;
@@ -436,15 +433,14 @@ bool CurveFinder::find_separation(std::span<const std::uint32_t> members, Inters
 
 /// Chooses the direction with the least depth.
 void CurveFinder::find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
-  const std::array<SurfaceView, 2> surfaces{input_.a, input_.b};
   double largest = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     const auto include = [&](std::uint32_t t) {
-      for (const Vec3d& p : surfaces[side].corners(t)) largest = std::max(largest, largest_magnitude(p));
+      for (const Vec3d& p : surface_of(side).corners(t)) largest = std::max(largest, largest_magnitude(p));
     };
     for (const std::uint32_t i : members) include(triangle_of(i, side));
     for_each_behind(side, [&](std::uint32_t v) {
-      for (const std::uint32_t t : surfaces[side].around->around(v)) include(t);
+      for (const std::uint32_t t : surface_of(side).around->around(v)) include(t);
     });
   }
   const double scale = scale_of(largest);
@@ -453,10 +449,10 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
   for (std::size_t side = 0; side < 2; ++side) {
     for (const std::uint32_t i : members) way_out_.add_triangle(side, triangle_of(i, side));
     for_each_behind(side, [&](std::uint32_t v) {
-      for (const std::uint32_t t : surfaces[side].around->around(v)) way_out_.add_triangle(side, t);
+      for (const std::uint32_t t : surface_of(side).around->around(v)) way_out_.add_triangle(side, t);
     });
     for (const std::uint32_t v : regions_[side].inside())
-      way_out_.add_probe(side, surfaces[side].position(v));
+      way_out_.add_probe(side, surface_of(side).position(v));
     for (const Vec3d& p : regions_[side].middles()) way_out_.add_probe(side, p);
   }
 
@@ -468,12 +464,12 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
     // A face of b, which points of a leave; a face of a, from which points of b go away.
     const std::size_t moves = direction.side == 0 ? 1 : 0;
     const double sign = moves == 0 ? -1 : 1;
-    const Vec3d plane = scale * surfaces[direction.side].corners(direction.triangle)[0] - origin;
+    const Vec3d plane = scale * surface_of(direction.side).corners(direction.triangle)[0] - origin;
     double behind = 0;
     const auto include = [&](const Vec3d& p) {
       behind = std::max(behind, sign * dot(normal, scale * p - origin - plane));
     };
-    for (const std::uint32_t v : regions_[moves].inside()) include(surfaces[moves].position(v));
+    for (const std::uint32_t v : regions_[moves].inside()) include(surface_of(moves).position(v));
     for_each_point(members, include);
     candidates_.push_back({normal, behind});
   }

@@ -81,6 +81,7 @@ class CurveFinder {
   void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
 
+  const SurfaceView& surface_of(std::size_t side) const { return side == 0 ? input_.a : input_.b; }
   const Contact& contact(std::uint32_t i) const { return contacts_[i]; }
   std::uint32_t first_place(std::uint32_t i) const {
     return contacts_[i].first_point - contacts_[0].first_point;

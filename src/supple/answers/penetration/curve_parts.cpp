@@ -126,14 +126,14 @@ double CurveParts::way_along(const Vec3d& normal, double limit) {
   axes_ = {u, v, normal};
   if (triangles_[0].empty() || triangles_[1].empty()) return nothing_ahead;
   for (std::size_t side = 0; side < 2; ++side) {
-    if (!is_built_) build(side);
+    if (!is_built_[side]) build(side);
     project(side);
   }
-  is_built_ = true;
-  constexpr double none = -std::numeric_limits<double>::infinity();
-  double longest = none;
+  is_built_ = {true, true};
+  double longest = nothing;
   const auto push = [&](std::uint32_t a, std::uint32_t b) {
     const Box &of_a = nodes_[0][a].box, &of_b = nodes_[1][b].box;
+    if (of_a.is_upright && of_b.is_upright) return;
     const double bound = of_b.max.z - of_a.min.z;
     const bool overlap = of_a.min.x < of_b.max.x && of_b.min.x < of_a.max.x && of_a.min.y < of_b.max.y &&
                          of_b.min.y < of_a.max.y;
@@ -145,6 +145,10 @@ double CurveParts::way_along(const Vec3d& normal, double limit) {
     const auto [a, b, bound] = stack_.back();
     stack_.pop_back();
     if (bound <= longest) continue;
+    if (bound <= rounding && longest > 0) {
+      longest = bound;
+      continue;
+    }
     const Node &of_a = nodes_[0][a], &of_b = nodes_[1][b];
     const std::size_t first = stack_.size();
     if (of_a.child == 0 && of_b.child == 0) {
@@ -162,7 +166,7 @@ double CurveParts::way_along(const Vec3d& normal, double limit) {
     if (stack_.size() == first + 2 && stack_[first].bound > stack_[first + 1].bound)
       std::swap(stack_[first], stack_[first + 1]);
   }
-  return longest == none ? nothing_ahead : std::max(longest, 0.0);
+  return longest == nothing ? nothing_ahead : std::max(longest, 0.0);
 }
 
 bool CurveParts::is_covered(std::size_t side, const Vec3d& point, double way) {
@@ -225,6 +229,8 @@ void CurveParts::project(std::size_t side) {
     for (Vec3d& p : triangle) p = seen(p);
     Box box{triangle[0], triangle[0]};
     for (const Vec3d& p : triangle) box.include({p, p});
+    const double size = largest_magnitude(box.max - box.min);
+    box.is_upright = std::fabs(turn(triangle[0], triangle[1], triangle[2])) < 0x1p-43 * size * size;
     projected_[side].push_back({triangle, box});
   }
   for (std::size_t i = nodes_[side].size(); i-- > 0;) {

@@ -17,20 +17,23 @@ class CurveParts {
  public:
   void clear() {
     for (auto& part : triangles_) part.clear();
-    is_built_ = false;
+    is_built_ = {};
   }
   /// Coordinates are about 1 or less. `side` is 0 for a and 1 for b.
   void add(std::size_t side, const TrianglePoints& corners) {
     triangles_[side].push_back(corners);
-    is_built_ = false;
+    is_built_[side] = false;
   }
 
+  /// Rounding of coordinates can make ways this long.
+  static constexpr double rounding = 0x1p-49;
   static constexpr double nothing_ahead = std::numeric_limits<double>::infinity();
 
   /// The longest way along the unit vector from a point of a to a point of b, at least 0: so a passes b by
   /// this move. Triangles that are parallel to the vector, or that overlap only by rounding as seen along it,
-  /// have no such points. Where there are none at all, `nothing_ahead`. The search ends where the way exceeds
-  /// `limit`. O(n log n) for n triangles whose pairs have different ways, and O(n) for further directions.
+  /// have no such points. Where there are none at all, `nothing_ahead`. The result is never too short; up to
+  /// `rounding`, it may be too long. The search ends where the way exceeds `limit`. O(n log n) for n
+  /// triangles whose pairs have ways that differ by more than rounding, and O(n) for further directions.
   double way_along(const Vec3d& normal, double limit = nothing_ahead);
 
   /// After `way_along`: whether a triangle of the other side is straight ahead of a point of a, or straight
@@ -41,11 +44,13 @@ class CurveParts {
   /// By the coordinates across the vector, and its height along it in z.
   struct Box {
     Vec3d min, max;
+    bool is_upright = false;  // all triangles are parallel to the vector: such have no way between them
     void include(const Box& other) {
       for (int axis = 0; axis < 3; ++axis) {
         min[axis] = other.min[axis] < min[axis] ? other.min[axis] : min[axis];
         max[axis] = other.max[axis] > max[axis] ? other.max[axis] : max[axis];
       }
+      is_upright = is_upright && other.is_upright;
     }
   };
   struct Projected {
@@ -71,7 +76,7 @@ class CurveParts {
   std::array<std::vector<Projected>, 2> projected_;
   std::array<std::vector<Node>, 2> nodes_;
   std::vector<Pair> stack_;
-  bool is_built_ = false;
+  std::array<bool, 2> is_built_{};
   std::array<Vec3d, 3> axes_;  // the last one is the vector
 };
 

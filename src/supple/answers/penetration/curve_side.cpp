@@ -86,11 +86,6 @@ bool CurveSide::color_corners() {
 
 /// Marks the corners by their colours. False when the curve has several pieces on this surface.
 bool CurveSide::start_flood() {
-  constexpr std::uint32_t almost_all = 0xfffffff0;
-  if (last_mark_ > almost_all) {
-    std::fill(marks_.begin(), marks_.end(), 0);
-    last_mark_ = 0;
-  }
   last_mark_ += 2;
   for (auto& flooded : flooded_) flooded.clear();
   for (std::uint32_t c = 0; c < corners_.size(); ++c) {

@@ -43,7 +43,7 @@ class CurveSide {
   bool start_flood();
   const std::vector<std::uint32_t>* flood(const SurfaceView& surface, std::uint32_t behind);
   bool is_cut(std::uint32_t corner, std::uint32_t other) const;
-  std::uint32_t mark_of(std::size_t color) const { return last_mark_ + static_cast<std::uint32_t>(color); }
+  std::uint64_t mark_of(std::size_t color) const { return last_mark_ + color; }
 
   std::vector<std::uint32_t> corner_of_;       // by vertex: its place in `corners_`, or `none`
   std::vector<std::uint32_t> corners_;         // vertices of the triangles
@@ -54,8 +54,8 @@ class CurveSide {
   std::vector<std::uint32_t> cuts_, first_cut_;
   ParitySets colors_;                  // of the corners
   bool is_opposite_to_first_ = false;  // the corner with the smallest vertex, to the first corner
-  std::vector<std::uint32_t> marks_;   // by vertex
-  std::uint32_t last_mark_ = 0;
+  std::vector<std::uint64_t> marks_;   // by vertex
+  std::uint64_t last_mark_ = 0;
   std::array<std::vector<std::uint32_t>, 2> flooded_;  // by colour
 };
 

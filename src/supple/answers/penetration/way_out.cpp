@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -11,13 +12,6 @@ namespace {
 
 /// Depths within this ratio count as equal.
 constexpr double equal = 1 + 0x1p-36;
-
-bool is_in_box(const Aabb& box, const Vec3d& p) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (p[axis] < double{box.min[axis]} || p[axis] > double{box.max[axis]}) return false;
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -153,8 +147,10 @@ double WayOut::depth_without_return(const Way& way, int& parts) {
         const double rounding = 0x1p-44 + 0x1p-50 * scale_ * largest_magnitude(probe);
         const double moved = depth * (1 + 0x1p-30) + rounding, sign = side == 0 ? 1 : -1;
         const Vec3d place = probe + (sign * moved / scale_) * way.normal;
+        Aabb box;
+        extend(box, place);
         const double exit =
-            is_in_box(bodies_[1 - side].queried->box, place) ? cast(side, place, way.normal, false) : -1;
+            overlap(bodies_[1 - side].queried->box, box) ? cast(side, place, way.normal, false) : -1;
         if (exit <= 0) continue;  // on the surface, it is not inside
         depth = moved + exit;
         is_free = false;
@@ -167,9 +163,12 @@ double WayOut::depth_without_return(const Way& way, int& parts) {
 WayOut::Way WayOut::find(std::span<const WayCandidate> candidates) {
   for (std::size_t side = 0; side < 2; ++side) choose_probes(side);
   tried_.clear();
+  // No direction is better than one whose depth is rounding. Of those with depth 0, `is_before` chooses.
+  const auto is_rounding = [&] { return least_depth() > 0 && least_depth() <= CurveParts::rounding; };
   for (const WayCandidate& candidate : candidates)
-    tried_.push_back(try_along(candidate.normal, least_depth()));
-  try_corners(candidates);
+    tried_.push_back(is_rounding() ? Tried{{candidate.normal, 0}, true}
+                                   : try_along(candidate.normal, least_depth()));
+  if (!is_rounding()) try_corners(candidates);
   int parts = 64;  // of all candidates
   for (;;) {
     const double least = least_depth();

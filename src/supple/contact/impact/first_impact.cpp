@@ -173,13 +173,6 @@ Impact moderate_impact_at(const ElementMotion& motion, const RelativeMotion& rel
   return impact;
 }
 
-double largest_coordinate(const ElementMotion& motion) {
-  double largest = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    largest = std::max({largest, largest_magnitude(motion.start[i]), largest_magnitude(motion.end[i])});
-  return largest;
-}
-
 /// The impact of elements that first touch at `time`; at 0 they may also be apart by less than rounding can
 /// tell.
 Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, double time,

@@ -33,6 +33,13 @@ struct ElementMotion {
   }
 };
 
+inline double largest_coordinate(const ElementMotion& motion) {
+  double largest = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    largest = std::max({largest, largest_magnitude(motion.start[i]), largest_magnitude(motion.end[i])});
+  return largest;
+}
+
 /// Two elements relative to each other. The differences of their points are `m` - alpha `u` - beta `w`, where
 /// (alpha, beta) runs over the triangle alpha, beta >= 0, alpha + beta <= 1 for a vertex and a face, and over
 /// the unit square for two edges. All three vectors move linearly from `start` to `end`.

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 #include <tuple>
 
 #include "contact/distance/element_distance.hpp"
@@ -17,18 +16,6 @@
 namespace supple {
 namespace {
 
-double longest_of(std::span<const Vec3d> ways) {
-  double longest = 0;
-  for (const Vec3d& way : ways) longest = std::max(longest, scaled_norm(way));
-  return longest;
-}
-
-std::array<Vec3d, 4> ways_of(const ElementMotion& motion) {
-  std::array<Vec3d, 4> ways;
-  for (std::size_t i = 0; i < 4; ++i) ways[i] = motion.end[i] - motion.start[i];
-  return ways;
-}
-
 /// A motion times a power of two, so that products of coordinates neither overflow nor underflow. Coordinates
 /// that vanish are far below the rounding of the others.
 struct ScaledMotion {
@@ -38,10 +25,7 @@ struct ScaledMotion {
 
   ScaledMotion(const ElementMotion& unscaled, const KeptDistance& unscaled_kept)
       : motion(unscaled), kept(unscaled_kept) {
-    double size = 0;
-    for (const auto* moment : {&motion.start, &motion.end}) {
-      for (const Vec3d& p : *moment) size = std::max(size, largest_magnitude(p));
-    }
+    const double size = largest_coordinate(motion);
     if (size == 0 || (size < 0x1p100 && size > 0x1p-100)) return;
     const int exponent = std::clamp(-std::ilogb(size), -1000, 1000);
     factor = std::ldexp(1.0, exponent);
@@ -75,12 +59,6 @@ bool is_beyond(const DistanceBounds& distance, const ScaledMotion& scaled, const
   return kept.separation == 0 || !are_within(motion, kept.separation);
 }
 
-/// The most by which elements at this distance may come nearer, rounded down.
-double least_room(const DistanceBounds& distance, const KeptDistance& kept, bool is_beyond) {
-  const double beyond = distance.low - (is_beyond ? kept.separation : 0);
-  return std::max(beyond * (1 - kept.keep) * (1 - 0x1p-40), 0.0);
-}
-
 /// Whether the time of the search is early by no more than 2^-18 of the time at which the elements are at the
 /// distance that they keep. The search looked for its upper bound.
 bool is_precise(const ImpactSearch& search, const RelativeMotion& relative, const KeptBounds& least) {
@@ -106,14 +84,15 @@ bool have_same_way(const Vec3d& start, const Vec3d& end, const Vec3d& start_of_o
 /// The most by which points of the elements come nearer along a direction from the second to the first, where
 /// each element moves by at least `least` towards the other.
 double approach_along(const Vec3d& direction, const ElementMotion& motion, double least) {
-  const std::array<Vec3d, 4> ways = ways_of(motion);
-  double most_a = least, most_b = least;
+  double most_a = least, most_b = least, longest = 0;
   for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3d way = motion.end[i] - motion.start[i];
     const bool is_of_a = i < (motion.are_edges ? 2u : 1u);
     double& most = is_of_a ? most_a : most_b;
-    most = std::max(most, dot(is_of_a ? -1.0 * ways[i] : ways[i], direction));
+    most = std::max(most, dot(is_of_a ? -1.0 * way : way, direction));
+    longest = std::max(longest, scaled_norm(way));
   }
-  return std::max(most_a + most_b, 0.0) * (1 + 0x1p-40) + rounding_of_ways * longest_of(ways);
+  return std::max(most_a + most_b, 0.0) * (1 + 0x1p-40) + rounding_of_ways * longest;
 }
 
 }  // namespace
@@ -123,9 +102,7 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
   const ScaledMotion scaled(motion, kept);
   const RelativeMotion relative = relative_motion(scaled.motion);
   const DistanceBounds start = distance_bounds(relative, 0);
-  ElementMotion at_start = motion;
-  at_start.end = at_start.start;
-  if (start.low == 0 && exact_first_contact(at_start)) {
+  if (start.low == 0 && touch_at_start(motion)) {
     constexpr double any = std::numeric_limits<double>::infinity();
     return {{}, any, false, !touch_at_rest(motion)};
   }
@@ -151,9 +128,18 @@ double free_part(const ElementMotion& motion, const KeptDistance& kept, double r
   const ScaledMotion scaled(motion, kept);
   const DistanceBounds start = distance_bounds(relative_motion(scaled.motion), 0);
   const double approach = approach_along(start.direction, scaled.motion, 0) + 2 * growth * scaled.factor;
-  const double room =
-      least_room(start, scaled.kept, is_beyond(start, scaled, motion, kept)) - 2 * rounding * scaled.factor;
+  const double beyond = start.low - (is_beyond(start, scaled, motion, kept) ? scaled.kept.separation : 0);
+  const double room = std::max(beyond * (1 - kept.keep) * (1 - 0x1p-40), 0.0) - 2 * rounding * scaled.factor;
   return approach > 0 ? std::clamp(room / approach * (1 - 0x1p-40), 0.0, 1.0) : 1;
+}
+
+bool touch_at_start(const ElementMotion& motion) {
+  const auto first_of_b = motion.start.begin() + (motion.are_edges ? 2 : 1);
+  if (std::find_first_of(motion.start.begin(), first_of_b, first_of_b, motion.start.end()) != first_of_b)
+    return true;
+  ElementMotion at_start = motion;
+  at_start.end = at_start.start;
+  return exact_first_contact(at_start).has_value();
 }
 
 bool touch_at_rest(const ElementMotion& motion) {

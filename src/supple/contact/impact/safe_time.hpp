@@ -31,6 +31,9 @@ SafeTime safe_time(const ElementMotion& motion, const KeptDistance& kept, double
 /// their ways. They then also stay farther apart than `rounding` plus the part times `growth`.
 double free_part(const ElementMotion& motion, const KeptDistance& kept, double rounding, double growth);
 
+/// Whether elements share a point at the start.
+bool touch_at_start(const ElementMotion& motion);
+
 /// Whether elements that touch at the start do not move against each other: the vertices of the features that
 /// touch, as `ElementDistance` names them, move by exactly the same way.
 bool touch_at_rest(const ElementMotion& motion);
