@@ -22,4 +22,4 @@ cmake --build --preset "$build" -j "$(nproc)" --target supple_python
 export PYTHONPATH=$PWD/build/$build/python SUPPLE_PROGRAM=${SUPPLE_PROGRAM:-$PWD/build/release/bin/supple}
 # A sanitizer must be loaded before Python; leaks of the interpreter are not ours.
 export LD_PRELOAD=${LD_PRELOAD_FOR_TESTS:-} ASAN_OPTIONS=detect_leaks=0
-exec "$environment/bin/python" -m pytest -q -n 2 "$@"
+exec "$environment/bin/python" -m pytest -q "$@"
