@@ -18,7 +18,7 @@ namespace {
 using sturm::Integer;
 using IntegerVector = NumberVector<Integer>;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 
 /// A point and the corners of a triangle, in units of 2^lowest.
 std::array<IntegerVector, 4> integers_of(const Vec3d& point, const TrianglePoints& corners, int& lowest) {
@@ -80,7 +80,7 @@ bool crosses_ahead(const TrianglePoints& t, const Vec3d& p, int side) {
 
 /// Numbers between which a distance is.
 struct Bounds {
-  double lower = 0, upper = infinity;
+  double lower = 0, upper = no_bound;
 };
 
 /// About the point of the segment from `a` along `u` that is closest to the origin.
