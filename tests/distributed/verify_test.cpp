@@ -1,4 +1,4 @@
-// Brute force over all ranks gives the report of `Scene::verify`, wherever the contacts are.
+// Brute force over all ranks gives the report of `verify`, wherever the contacts are.
 
 #include <gtest/gtest.h>
 

@@ -380,7 +380,7 @@ CONTRACTS = {
     'DistributedScene::stats':
         'What this rank did in the last collective call.',
     'DistributedScene::verify':
-        'As `Scene.verify`: the last collective call must be `detect`. The ranks share the pairs of objects, and all of them get the report. Each rank reads all objects again from the ranks that added them, so the call also verifies the messages of `detect`. Each rank needs memory for the whole scene.',
+        'As `verify`: the last collective call must be `detect`. The ranks share the pairs of objects, and all of them get the report. Each rank reads all objects again from the ranks that added them, so the call also verifies the messages of `detect`. Each rank needs memory for the whole scene.',
     'ElementVertices::begin':
         'See `ElementVertices::begin` in supple/contact.hpp.',
     'ElementVertices::end':
@@ -576,7 +576,7 @@ CONTRACTS = {
     'SceneInspector::cells':
         "The cells of an object's octree at `level` and the leaves above it, which together cover the object. Without a level: all leaves. Ordered by level. Cells enclose the triangles at their present positions, rounded outward; for an object on a path, at the end of the step. Cells without a finite triangle are empty.",
     'SceneInspector::explain':
-        'Why two triangles are a contact of the last `detect`, or which stage separated them. Calls the pair filter. O(octree depth), and for continuous contacts O(contacts of the two objects). Throws `Error` when a triangle is out of range.',
+        'Why two triangles are a contact of the last `detect`, or which stage separated them. Calls the pair filter. Continuous contacts and near pairs that a truncated result leaves out do not count. O(octree depth), and for these O(contacts of the objects). Throws `Error` when a triangle is out of range.',
     'SceneInspector::leaf':
         'The leaf that contains a triangle. O(octree depth). Throws `Error` when the triangle is out of range.',
     'SceneInspector::node_pairs':

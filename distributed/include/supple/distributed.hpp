@@ -137,7 +137,7 @@ class DistributedScene {
   /// statistics are sums over all ranks, its times those of the slowest rank. A stop on one rank stops the
   /// call on all of them. Requests with `max_contacts`, manifolds or first contacts of elements are errors.
   const DetectResult& detect(const DetectRequest& request = {});
-  /// As `Scene::verify`: the last collective call must be `detect`. The ranks share the pairs of objects, and
+  /// As `verify`: the last collective call must be `detect`. The ranks share the pairs of objects, and
   /// all of them get the report. Each rank reads all objects again from the ranks that added them, so the
   /// call also verifies the messages of `detect`. Each rank needs memory for the whole scene.
   VerifyReport verify(const CallLimits& limits = {});

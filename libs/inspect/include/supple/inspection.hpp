@@ -185,8 +185,8 @@ class SceneInspector {
   /// memory.
   CandidateList candidates(std::size_t limit) const;
   /// Why two triangles are a contact of the last `detect`, or which stage separated them. Calls the pair
-  /// filter. O(octree depth), and for continuous contacts O(contacts of the two objects). Throws `Error` when
-  /// a triangle is out of range.
+  /// filter. Continuous contacts and near pairs that a truncated result leaves out do not count. O(octree
+  /// depth), and for these O(contacts of the objects). Throws `Error` when a triangle is out of range.
   PairExplanation explain(ObjectId object_a, std::uint32_t triangle_a, ObjectId object_b,
                           std::uint32_t triangle_b) const;
 
