@@ -31,8 +31,8 @@ int main() {
       continue;
     }
     std::printf("step %d: %s and %s touch at %.6f, and %zu pairs would by the end\n", step,
-                scene.name(impact->object_a).c_str(), scene.name(impact->object_b).c_str(), impact->toi,
-                scene.detect().continuous_contacts.size());
+                scene.options(impact->object_a).name.c_str(), scene.options(impact->object_b).name.c_str(),
+                impact->toi, scene.detect().continuous_contacts.size());
     // Your own response goes here. This one stops before the contact.
     const double part = 0.9 * scene.max_step().step;
     for (std::size_t i = 0; i < now.size(); ++i) now[i] = now[i] + part * velocity;

@@ -18,10 +18,10 @@ int main() {
     scene.set_transform(passing, {.translation = {-3.0 + 0.5 * frame, 0.25, 0.125}});
     const supple::PairEvents& events = scene.detect().contact_events;
     for (const supple::ObjectPair& pair : events.begin)
-      std::printf("frame %d: %s and %s begin to touch\n", frame, scene.name(pair.a).c_str(),
-                  scene.name(pair.b).c_str());
+      std::printf("frame %d: %s and %s begin to touch\n", frame, scene.options(pair.a).name.c_str(),
+                  scene.options(pair.b).name.c_str());
     for (const supple::ObjectPair& pair : events.end)
-      std::printf("frame %d: %s and %s part\n", frame, scene.name(pair.a).c_str(),
-                  scene.name(pair.b).c_str());
+      std::printf("frame %d: %s and %s part\n", frame, scene.options(pair.a).name.c_str(),
+                  scene.options(pair.b).name.c_str());
   }
 }

@@ -23,8 +23,8 @@ int main() {
     std::printf("%s:\n", title);
     const supple::DetectResult& result = scene.detect();
     for (const supple::ContactGroup& group : result.groups)
-      std::printf("  %s touches %s: %u triangle pairs\n", scene.name(group.a).c_str(),
-                  scene.name(group.b).c_str(), group.contact_count);
+      std::printf("  %s touches %s: %u triangle pairs\n", scene.options(group.a).name.c_str(),
+                  scene.options(group.b).name.c_str(), group.contact_count);
   };
   print_pairs("groups and masks");
   scene.set_pair_filter(

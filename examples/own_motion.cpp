@@ -30,11 +30,13 @@ int main() {
   while (simulation.time() < 2.5) {
     const supple::DetectResult& result = simulation.step();
     for (const supple::ObjectPair& pair : result.contact_events.begin)
-      std::printf("%.2f s: %s touches %s\n", simulation.time(), simulation.scene().name(pair.a).c_str(),
-                  simulation.scene().name(pair.b).c_str());
+      std::printf("%.2f s: %s touches %s\n", simulation.time(),
+                  simulation.scene().options(pair.a).name.c_str(),
+                  simulation.scene().options(pair.b).name.c_str());
     for (const supple::ObjectPair& pair : result.contact_events.end)
-      std::printf("%.2f s: %s lets go of %s\n", simulation.time(), simulation.scene().name(pair.a).c_str(),
-                  simulation.scene().name(pair.b).c_str());
+      std::printf("%.2f s: %s lets go of %s\n", simulation.time(),
+                  simulation.scene().options(pair.a).name.c_str(),
+                  simulation.scene().options(pair.b).name.c_str());
   }
   std::printf("a vertex of the ball is at (%.3f, %.3f, %.3f)\n", simulation.positions(shrinking)[0].x,
               simulation.positions(shrinking)[0].y, simulation.positions(shrinking)[0].z);

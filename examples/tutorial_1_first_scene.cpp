@@ -13,8 +13,8 @@ int main() {
 
   const supple::DetectResult& result = scene.detect();
   for (const supple::ContactGroup& group : result.groups) {
-    std::printf("%s and %s: %u contacts\n", scene.name(group.a).c_str(), scene.name(group.b).c_str(),
-                group.contact_count);
+    std::printf("%s and %s: %u contacts\n", scene.options(group.a).name.c_str(),
+                scene.options(group.b).name.c_str(), group.contact_count);
   }
   const supple::Contact& first = result.contacts.front();
   for (const supple::ContactPoint& point : result.points_of(first)) {

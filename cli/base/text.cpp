@@ -41,7 +41,7 @@ std::optional<std::string> nearest_of(const std::string& mistyped, const std::ve
 }
 
 std::string name_of(const Scene& scene, ObjectId object) {
-  return fmt::format("{} {}", object.index, one_line(scene.name(object)));
+  return fmt::format("{} {}", object.index, one_line(scene.options(object).name));
 }
 
 std::string name_of(Feature feature) {

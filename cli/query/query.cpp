@@ -285,7 +285,7 @@ void Run::write_json(bool is_truncated) const {
   json.begin_array();
   for (const ObjectId object : scene_.objects()) {
     json.begin_object();
-    json.member("name", scene_.name(object));
+    json.member("name", scene_.options(object).name);
     json.member("vertices", std::uint64_t{scene_.vertex_count(object)});
     json.member("triangles", std::uint64_t{scene_.triangle_count(object)});
     json.end_object();

@@ -61,21 +61,13 @@ class DistributedScene::Implementation {
     has_detected_ = false;
     filter_ = std::move(given);
   }
-  /// Changes what the ranks with clusters of the object know of it: `change(object)`.
+  /// Changes what the ranks with clusters of the object know of it, unless `change(object)` is false.
   template <class Change>
   void change(ObjectId id, const char* call, const Change& change) {
     HomeObject& object = changing(id, call);
-    change(object);
+    if (!change(object)) return;
     object.addition = additions_++;
     has_changed_ = true;
-  }
-  void change_option(ObjectId id, const char* call, const auto& member, const auto& value) {
-    change(id, call, [&](HomeObject& object) {
-      ObjectOptions options_now = object.options;
-      options_now.*member = value;
-      check(options_now, call);
-      object.options = options_now;
-    });
   }
   const DetectResult& detect(const DetectRequest& request);
   VerifyReport verify(const CallLimits& limits);

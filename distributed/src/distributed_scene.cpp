@@ -226,28 +226,18 @@ const DetectResult& DistributedScene::detect(const DetectRequest& request) {
 VerifyReport DistributedScene::verify(const CallLimits& limits) {
   return implementation_->verify(limits);
 }
-void DistributedScene::set_static(ObjectId id, bool is_static) {
-  implementation_->change_option(id, "set_static", &ObjectOptions::is_static, is_static);
-}
-void DistributedScene::set_group(ObjectId id, std::uint32_t group, std::uint32_t mask) {
-  implementation_->change(id, "set_group", [&](HomeObject& object) {
-    object.options.group = group;
-    object.options.mask = mask;
+void DistributedScene::set_options(ObjectId id, const ObjectChanges& changes) {
+  implementation_->change(id, "set_options", [&](HomeObject& object) {
+    const auto [distances, pairs] = change_options(object.options, changes);
+    return distances || pairs;
   });
-}
-void DistributedScene::set_margin(ObjectId id, double margin) {
-  implementation_->change_option(id, "set_margin", &ObjectOptions::margin, margin);
-}
-void DistributedScene::set_min_separation(ObjectId id, double separation) {
-  implementation_->change_option(id, "set_min_separation", &ObjectOptions::min_separation, separation);
 }
 void DistributedScene::set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
                                          std::span<const std::uint32_t> masks) {
-  implementation_->change(id, "set_vertex_groups",
-                          [&](HomeObject& object) { object.set_vertex_groups(groups, masks); });
-}
-void DistributedScene::set_self_collision(ObjectId id, bool enabled) {
-  implementation_->change_option(id, "set_self_collision", &ObjectOptions::self_collision, enabled);
+  implementation_->change(id, "set_vertex_groups", [&](HomeObject& object) {
+    object.set_vertex_groups(groups, masks);
+    return true;
+  });
 }
 void DistributedScene::set_pair_filter(PairFilter filter) {
   implementation_->set_filter(std::move(filter));

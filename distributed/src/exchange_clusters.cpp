@@ -382,7 +382,7 @@ void DistributedScene::Implementation::fetch_clusters() {
       throw;
     }
     world().set_filter([this](ObjectId a, ObjectId b) { return is_tested(a, b); });
-    for (const ObjectId id : world().objects()) world().set_self_collision(id, is_tested(id, id));
+    for (const auto id : world().objects()) world().set_options(id, {.self_collision = is_tested(id, id)});
   });
   release_messages();  // the search needs the memory
 }

@@ -73,7 +73,7 @@ void WholeScene::add(ObjectId id, const SavedObject& saved) {
     const ObjectId own = world_.add(end, saved.triangles, options, "");
     if (saved.has_motion) world_.set_motion(own, start, end);
     world_.set_vertex_groups(own, saved.groups, saved.masks);
-    world_.set_static(own, saved.options.is_static);
+    world_.set_options(own, {.is_static = saved.options.is_static});
     slots_.emplace(id, own.index);
   });
   numbers_.push_back({id, saved.faces, saved.vertices});

@@ -135,10 +135,7 @@ class Follower {
   const DetectResult& detect(const Simulation& simulation) {
     for (const auto& [own, its] : ids_) {
       const MassSpringBody* const body = options_.fused_refit ? simulation.body(its) : nullptr;
-      if (const auto bounds = body != nullptr ? body->bounds() : std::nullopt)
-        scene_.set_positions(own, simulation.positions(its), *bounds);
-      else
-        scene_.set_positions(own, simulation.positions(its));
+      scene_.set_positions(own, simulation.positions(its), body != nullptr ? body->bounds() : std::nullopt);
     }
     return scene_.detect();
   }

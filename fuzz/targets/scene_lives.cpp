@@ -230,25 +230,26 @@ class Life {
       }
       case 7: {
         const bool is_static = bytes_.flag();
-        both([&](Scene& scene, std::size_t) { scene.set_static(id, is_static); });
+        both([&](Scene& scene, std::size_t) { scene.set_options(id, {.is_static = is_static}); });
         return;
       }
       case 8: {
         const std::uint32_t group = bytes_.below(4), mask = bytes_.below(4);
-        both([&](Scene& scene, std::size_t) { scene.set_group(id, group, mask); });
+        both([&](Scene& scene, std::size_t) { scene.set_options(id, {.group = group, .mask = mask}); });
         return;
       }
       case 9: {
         const double length = draw_length();
         const bool margin = bytes_.flag();
         both([&](Scene& scene, std::size_t) {
-          margin ? scene.set_margin(id, length) : scene.set_min_separation(id, length);
+          margin ? scene.set_options(id, {.margin = length})
+                 : scene.set_options(id, {.min_separation = length});
         });
         return;
       }
       case 10: {
         const bool self = bytes_.flag();
-        both([&](Scene& scene, std::size_t) { scene.set_self_collision(id, self); });
+        both([&](Scene& scene, std::size_t) { scene.set_options(id, {.self_collision = self}); });
         return;
       }
       case 11: {

@@ -107,7 +107,7 @@ enum class Neighbours : std::uint8_t {
   exact,
 };
 
-/// Options of one object, given when it is added.
+/// Options of one object, given when it is added. `Scene::set_options` changes those of `ObjectChanges`.
 struct ObjectOptions {
   /// Appears in messages and results; the mesh's name when empty.
   std::string name{};
@@ -144,9 +144,18 @@ struct ObjectOptions {
   /// Two objects are tested when the `group` of each has a bit in common with the `mask` of the other.
   std::uint32_t group = 1;
   std::uint32_t mask = ~std::uint32_t{0};
-  /// A number or a pointer of the user; the library does not read it. See `Scene::user_data`.
+  /// A number or a pointer of the user; the library does not read it.
   std::uint64_t user_data = 0;
   ObjectOctreeOptions octree{};  ///< shape of the octree; only for comparison
+};
+
+/// New values for options of an object that is in a scene; see `Scene::set_options`. An option without a
+/// value stays as it is. Options that are not here are fixed when the object is added.
+struct ObjectChanges {
+  std::optional<bool> self_collision{}, is_static{};
+  std::optional<double> margin{}, min_separation{};
+  std::optional<std::uint32_t> group{}, mask{};
+  std::optional<std::uint64_t> user_data{};
 };
 
 /// Options of a scene, fixed at its construction.

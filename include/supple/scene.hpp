@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "supple/call_limits.hpp"
@@ -23,6 +22,20 @@ namespace supple {
 class Scene;
 /// A function that sees each step of a scene; see `Scene::set_observer`.
 using DetectObserver = std::function<void(const Scene&, const DetectRequest&)>;
+
+namespace detail {
+
+ElementVertices vertices_of(const Scene& scene, const Contact& contact, ContactSide side);
+ElementVertices vertices_of(const Scene& scene, const ContinuousContact& contact, ContactSide side);
+ElementVertices vertices_of(const Scene& scene, const ProximityPair& pair, ContactSide side);
+ElementVertices vertices_of(const Scene& scene, const LimitingPair& pair, ContactSide side);
+using PairWeights = std::array<std::array<double, 3>, 2>;
+PairWeights weights_of(const Scene& scene, const Contact& contact);
+PairWeights weights_of(const Scene&, const auto& pair) {
+  return {pair.barycentric_a, pair.barycentric_b};
+}
+
+}  // namespace detail
 
 /// Rigid placement: `rotation` (row-major; it may also scale, shear or mirror), then `translation`. A point p
 /// becomes fl(R p) + t. Each row of R p is summed from left to right in double, without fused multiply-add.
@@ -72,9 +85,6 @@ class Scene {
  public:
   /// Throws `Error` when an option is out of its range.
   explicit Scene(const SceneOptions& options = {});
-  ~Scene();
-  Scene(Scene&&) noexcept;
-  Scene& operator=(Scene&&) noexcept;
 
   /// Adds an object and builds its octree from these positions (the rest pose) in O(n log n), on all threads
   /// of the scene. An object without triangles touches nothing. Throws `Error` for a vertex id that is
@@ -86,13 +96,12 @@ class Scene {
 
   /// Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Replaces earlier
   /// transforms, translations and paths. Throws `Error` when the number of positions differs from the mesh.
-  void set_positions(ObjectId object, PositionsView positions);
-  /// The same with the lowest and the highest coordinates of the positions, which a loop over all vertices,
-  /// such as that of a motion, can compute at little cost. With `ComparisonOptions::lazy_refit`, `detect`
-  /// then does not read the vertices of an object that meets no other one. All positions must be finite and
-  /// within the bounds: nothing checks that, and otherwise `detect` misses contacts. Throws `Error` when a
-  /// bound is not finite.
-  void set_positions(ObjectId object, PositionsView positions, const std::array<Vec3d, 2>& bounds);
+  /// The bounds are the lowest and the highest coordinates of the positions. With them and
+  /// `ComparisonOptions::lazy_refit`, `detect` does not read the vertices of an object that meets no other
+  /// one. All positions must be finite and within the bounds: nothing checks that, and otherwise `detect`
+  /// misses contacts. Throws `Error` when a bound is not finite.
+  void set_positions(ObjectId object, PositionsView positions,
+                     const std::optional<std::array<Vec3d, 2>>& bounds = {});
   /// Sets the positions of some vertices, O(k) for k of them, where only a part of the object moves: all
   /// others stay. `detect` then refits only the nodes of the octree around these vertices, to the same
   /// volumes. The positions are those that were last set, before the object's transform and translation,
@@ -125,15 +134,9 @@ class Scene {
   /// other calls place it at rest. Everything except continuous contacts uses the end of the path. Throws
   /// `Error` as `set_positions` does, and when one view is `float` and the other `double`.
   void set_motion(ObjectId object, PositionsView from, PositionsView to);
-  /// Changes `ObjectOptions::is_static`, O(1). Call it with false to move a static object.
-  void set_static(ObjectId object, bool is_static);
-
-  /// Changes `ObjectOptions::group` and `mask`, O(1).
-  void set_group(ObjectId object, std::uint32_t group, std::uint32_t mask);
-  /// Changes `ObjectOptions::margin`, O(1). Throws `Error` when it is out of range.
-  void set_margin(ObjectId object, double margin);
-  /// Changes `ObjectOptions::min_separation`, O(1). Throws `Error` when it is out of range.
-  void set_min_separation(ObjectId object, double separation);
+  /// Changes the options that have a value, O(1): `{.is_static = false}` lets a static object move. Values
+  /// that the options already have change nothing. Throws `Error` when a value is out of range.
+  void set_options(ObjectId object, const ObjectChanges& changes);
   /// Gives each vertex a group and a mask, as bits. Two vertices may touch when the group of each has a bit
   /// in common with the mask of the other; for objects without groups, all bits are set. `detect`, `verify`
   /// and safe steps leave out two triangles or elements when no vertex of one may touch a vertex of the
@@ -141,10 +144,6 @@ class Scene {
   /// not one number for each vertex.
   void set_vertex_groups(ObjectId object, std::span<const std::uint32_t> groups,
                          std::span<const std::uint32_t> masks);
-  /// Changes `ObjectOptions::user_data`, O(1).
-  void set_user_data(ObjectId object, std::uint64_t data);
-  /// Changes `ObjectOptions::self_collision`, O(1).
-  void set_self_collision(ObjectId object, bool enabled);
   /// Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`. When it
   /// excludes all pairs whose volumes overlap, `detect` also asks for others, until it accepts one.
   void set_pair_filter(PairFilter filter);
@@ -284,22 +283,20 @@ class Scene {
 
   std::vector<ObjectId> objects() const;  ///< ascending
   bool contains(ObjectId object) const;
-  const std::string& name(ObjectId object) const;
-  /// The options of an object, with all changes since it was added.
+  /// The options of an object, with its name in messages and results and all changes since it was added.
   const ObjectOptions& options(ObjectId object) const;
-  std::uint64_t user_data(ObjectId object) const;  ///< `ObjectOptions::user_data`
-  std::size_t vertex_count(ObjectId object) const;
-  std::size_t triangle_count(ObjectId object) const;
+  std::size_t vertex_count(ObjectId object) const;    ///< of its mesh
+  std::size_t triangle_count(ObjectId object) const;  ///< of its mesh
   /// The position that the exact tests use: with transforms and translations. Throws `Error` when there is no
   /// such vertex.
   Vec3d position(ObjectId object, std::uint32_t vertex) const;
-  /// The vertex ids of the element or triangle of a contact, O(1), in the order of the barycentric
-  /// coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners. Throws
-  /// `Error` when the object of a triangle was removed.
-  ElementVertices vertices_of(const ContinuousContact& contact, ContactSide side) const;
-  ElementVertices vertices_of(const Contact& contact, ContactSide side) const;
-  ElementVertices vertices_of(const ProximityPair& pair, ContactSide side) const;
-  ElementVertices vertices_of(const LimitingPair& pair, ContactSide side) const;
+  /// The vertex ids of one side of a `Contact`, `ContinuousContact`, `ProximityPair` or `LimitingPair`, O(1),
+  /// in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the
+  /// order of its corners. Throws `Error` when the object of a triangle was removed.
+  template <class Pair>
+  ElementVertices vertices_of(const Pair& pair, ContactSide side) const {
+    return detail::vertices_of(*this, pair, side);
+  }
   /// Calls `function(object, vertex, weight)` for each vertex of a pair: first those of a, then those of b.
   /// The weights are the barycentric coordinates of the closest or touching points, positive for a and
   /// negative for b. So their sum is 0, but for rounding, and the sum of weight times position is the vector
@@ -308,12 +305,12 @@ class Scene {
   /// flat. O(1). Throws `Error` as `vertices_of` does; of a `Contact` also when it is not of `result`.
   template <class Pair, class Function>
   void for_each_vertex(const Pair& pair, Function&& function) const {
-    const PairWeights weights = weights_of(pair);
+    const detail::PairWeights weights = detail::weights_of(*this, pair);
     for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
       const bool is_a = side == ContactSide::a;
       const ElementVertices vertices = vertices_of(pair, side);
       for (std::size_t i = 0; i < vertices.size(); ++i)
-        function(is_a ? pair.object_a : pair.object_b, vertices[i], is_a ? weights.a[i] : -weights.b[i]);
+        function(is_a ? pair.object_a : pair.object_b, vertices[i], is_a ? weights[0][i] : -weights[1][i]);
     }
   }
   const SceneOptions& options() const;
@@ -321,16 +318,10 @@ class Scene {
  private:
   friend class SceneAccess;
   class Implementation;
-  struct PairWeights {
-    std::array<double, 3> a{}, b{};
+  struct Deleter {
+    void operator()(Implementation* implementation) const;
   };
-  PairWeights weights_of(const Contact& contact) const;
-  template <class Pair>
-  PairWeights weights_of(const Pair& pair) const {
-    return {pair.barycentric_a, pair.barycentric_b};
-  }
-
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<Implementation, Deleter> implementation_;
 };
 
 }  // namespace supple

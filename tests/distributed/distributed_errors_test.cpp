@@ -119,8 +119,10 @@ TEST(DistributedErrors, OfSettingsAndSearches) {
   const TriangleMesh ball = make_icosphere(2);
   const ObjectId mine{static_cast<std::uint32_t>(scene.rank())};
   scene.add(mine, ball.positions, ball.triangles, {.name = "ball", .margin = 0.1});
-  EXPECT_NE(error_of([&] { scene.set_margin(mine, -1); }).find("set_margin"), std::string::npos);
-  EXPECT_NE(error_of([&] { scene.set_margin(ObjectId{77}, 1); }).find("is not on this rank"),
+  EXPECT_NE(
+      error_of([&] { scene.set_options(mine, {.margin = -1}); }).find("set_options: ObjectOptions::margin"),
+      std::string::npos);
+  EXPECT_NE(error_of([&] { scene.set_options(ObjectId{77}, {.margin = 1}); }).find("is not on this rank"),
             std::string::npos);
   const std::vector<std::uint32_t> one{1};
   EXPECT_NE(error_of([&] { scene.set_vertex_groups(mine, one, one); }).find("1 numbers for ball"),

@@ -173,24 +173,26 @@ class Lives {
     switch (random.below(7)) {
       case 0:
         options.margin = random.uniform(0, 0.1);
-        both([&](auto& scene) { scene.set_margin(object.id, options.margin); });
+        both([&](auto& scene) { scene.set_options(object.id, {.margin = options.margin}); });
         break;
       case 1:
         options.min_separation = random.uniform(0, 0.02);
-        both([&](auto& scene) { scene.set_min_separation(object.id, options.min_separation); });
+        both([&](auto& scene) { scene.set_options(object.id, {.min_separation = options.min_separation}); });
         break;
       case 2:
         options.group = 1 + random.below(3);
         options.mask = 1 + random.below(3);
-        both([&](auto& scene) { scene.set_group(object.id, options.group, options.mask); });
+        both([&](auto& scene) {
+          scene.set_options(object.id, {.group = options.group, .mask = options.mask});
+        });
         break;
       case 3:
         options.is_static = !options.is_static;
-        both([&](auto& scene) { scene.set_static(object.id, options.is_static); });
+        both([&](auto& scene) { scene.set_options(object.id, {.is_static = options.is_static}); });
         break;
       case 4:
         options.self_collision = !options.self_collision;
-        both([&](auto& scene) { scene.set_self_collision(object.id, options.self_collision); });
+        both([&](auto& scene) { scene.set_options(object.id, {.self_collision = options.self_collision}); });
         break;
       case 5:
         if (may_group) set_vertex_groups(object);
@@ -344,7 +346,7 @@ class Lives {
 
   void place(const LivingObject& object) {
     for_my_part(object, [&](const Part* part) {
-      if (object.options.is_static) distributed.set_static(object.id, false);
+      if (object.options.is_static) distributed.set_options(object.id, {.is_static = false});
       with_views(
           object.is_float, part != nullptr ? &part->vertices : nullptr,
           [&](const PositionsView& from, const PositionsView& now) {
@@ -352,7 +354,7 @@ class Lives {
                               : distributed.set_positions(object.id, now);
           },
           object.from, object.now);
-      if (object.options.is_static) distributed.set_static(object.id, true);
+      if (object.options.is_static) distributed.set_options(object.id, {.is_static = true});
     });
   }
 

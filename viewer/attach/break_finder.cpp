@@ -39,14 +39,14 @@ bool is_of(const std::array<std::string, 2>& objects, const std::string& a, cons
 }
 
 Break between(const Scene& scene, const char* event, ObjectId a, ObjectId b, const char* what) {
-  std::string text = scene.name(a);
-  text += a == b ? std::string(" ") + what + " itself" : std::string(" ") + what + " " + scene.name(b);
+  std::string text = scene.options(a).name + " " + what + " ";
+  text += a == b ? "itself" : scene.options(b).name;
   return {event, std::move(text), scene.result().step, {a, b}, contact_point(scene, a, b)};
 }
 
 std::optional<Break> new_contact(const Scene& scene, const BreakOptions& breaks) {
   for (const ObjectPair& pair : scene.result().contact_events.begin) {
-    if (is_of(breaks.objects, scene.name(pair.a), scene.name(pair.b)))
+    if (is_of(breaks.objects, scene.options(pair.a).name, scene.options(pair.b).name))
       return between(scene, "contact_begin", pair.a, pair.b, "begins to touch");
   }
   return std::nullopt;
@@ -60,8 +60,8 @@ const Penetration* deepest(std::span<const Penetration> penetrations) {
 
 Break too_deep(const Scene& scene, const Penetration& found) {
   std::string text = "a vertex of ";
-  text += scene.name(found.object_a) + " is " + short_text(found.depth) + " deep in " +
-          scene.name(found.object_b);
+  text += scene.options(found.object_a).name + " is " + short_text(found.depth) + " deep in " +
+          scene.options(found.object_b).name;
   return {"depth_above",
           std::move(text),
           scene.result().step,
@@ -83,7 +83,7 @@ Break too_many(const Scene& scene, std::uint64_t count) {
 Break not_finite(const Scene& scene) {
   const NonFiniteVertex& vertex = scene.result().non_finite_vertices.front();
   std::string text = "vertex ";
-  text += std::to_string(vertex.vertex) + " of " + scene.name(vertex.object) + " is NaN or infinite";
+  text += std::to_string(vertex.vertex) + " of " + scene.options(vertex.object).name + " is NaN or infinite";
   return {"not_finite", std::move(text), scene.result().step, {vertex.object, std::nullopt}, {}};
 }
 

@@ -35,8 +35,8 @@ FieldElement element_of(const Scene& scene, ObjectId object, std::string_view na
   const std::string has =
       wanted ? number(size(*wanted), *wanted)
              : number(vertices, FieldElement::vertex) + " and " + number(triangles, FieldElement::face);
-  fail(what_of(name, scene.name(object)) + " has " + std::to_string(count) + " values, but the object has " +
-       has + "; give one value for each");
+  fail(what_of(name, scene.options(object).name) + " has " + std::to_string(count) +
+       " values, but the object has " + has + "; give one value for each");
 }
 
 std::string words_of(const UserField& form) {
@@ -79,8 +79,8 @@ void UserFields::check_form(const Scene& scene, ObjectId object, const UserField
   if (field == nullptr || field->form == form) return;
   for (const auto& [other, values] : field->values) {
     if (other != object)
-      fail(what_of(form.name, scene.name(object)) + " has " + words_of(form) + ", but " + form.name + " of " +
-           scene.name(other) + " has " + words_of(field->form) +
+      fail(what_of(form.name, scene.options(object).name) + " has " + words_of(form) + ", but " + form.name +
+           " of " + scene.options(other).name + " has " + words_of(field->form) +
            "; a field has one form, so use another name");
   }
 }

@@ -196,7 +196,7 @@ void bind_scene(nb::module_& module) {
   });
   scene.def("name", [](SceneCore& core, ObjectId id) {
     const Reading reading(core.guard());
-    return core.scene().name(id);
+    return core.scene().options(id).name;
   });
   scene.def("vertex_count", [](SceneCore& core, ObjectId id) {
     const Reading reading(core.guard());

@@ -52,23 +52,23 @@ void bind_shared_calls(nb::class_<Core>& scene, bool can_repeat) {
   });
   setter("set_static", [](Core& core, ObjectId id, bool value) {
     const Alone alone(core.guard());
-    core.scene().set_static(id, value);
+    core.scene().set_options(id, {.is_static = value});
   });
   setter("set_group", [](Core& core, ObjectId id, std::uint32_t group, std::uint32_t mask) {
     const Alone alone(core.guard());
-    core.scene().set_group(id, group, mask);
+    core.scene().set_options(id, {.group = group, .mask = mask});
   });
   setter("set_margin", [](Core& core, ObjectId id, double margin) {
     const Alone alone(core.guard());
-    core.scene().set_margin(id, margin);
+    core.scene().set_options(id, {.margin = margin});
   });
   setter("set_min_separation", [](Core& core, ObjectId id, double separation) {
     const Alone alone(core.guard());
-    core.scene().set_min_separation(id, separation);
+    core.scene().set_options(id, {.min_separation = separation});
   });
   setter("set_self_collision", [](Core& core, ObjectId id, bool enabled) {
     const Alone alone(core.guard());
-    core.scene().set_self_collision(id, enabled);
+    core.scene().set_options(id, {.self_collision = enabled});
   });
   setter("set_vertex_groups",
          [](Core& core, ObjectId id, const List<std::uint32_t>& groups, const List<std::uint32_t>& masks) {

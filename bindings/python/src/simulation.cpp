@@ -162,8 +162,8 @@ void bind_simulation(nb::module_& module) {
   simulation.def("time", [](SimulationCore& core) { return core.simulation().time(); });
   simulation.def("motion_seconds", [](SimulationCore& core) { return core.simulation().motion_seconds(); });
   simulation.def("time_step", [](SimulationCore& core) { return core.simulation().options().time_step; });
-  simulation.def("name",
-                 [](SimulationCore& core, ObjectId id) { return core.simulation().scene().name(id); });
+  simulation.def(
+      "name", [](SimulationCore& core, ObjectId id) { return core.simulation().scene().options(id).name; });
   simulation.def("objects", [](SimulationCore& core) { return core.simulation().scene().objects(); });
   simulation.def("positions", [](SimulationCore& core, ObjectId id) {
     const Alone alone(core.guard());

@@ -359,22 +359,14 @@ CONTRACTS = {
         'Removes the object, or the part of it that this rank has.',
     'DistributedScene::save':
         'Collective: writes the objects of all ranks, with their options and positions, and what the events of the next step need, to one file. The file appears when it is whole: an older one stays until then. The options of the scene and the pair filter are not in it. Throws `Error` when the file cannot be written.',
-    'DistributedScene::set_group':
-        'As `Scene.set_group`.',
-    'DistributedScene::set_margin':
-        'As `Scene.set_margin`.',
-    'DistributedScene::set_min_separation':
-        'As `Scene.set_min_separation`.',
     'DistributedScene::set_motion':
         'As `Scene.set_motion`.',
+    'DistributedScene::set_options':
+        'As `Scene.set_options`.',
     'DistributedScene::set_pair_filter':
         'As `Scene.set_pair_filter`. All ranks set a function that gives the same answers. In each collective call, a rank asks it once for each pair of objects that it may test.',
     'DistributedScene::set_positions':
         'The positions of the vertices that this rank added, in its order. Copies them, O(n).',
-    'DistributedScene::set_self_collision':
-        'As `Scene.set_self_collision`.',
-    'DistributedScene::set_static':
-        'As `Scene.set_static`.',
     'DistributedScene::set_vertex_groups':
         'As `Scene.set_vertex_groups` for the vertices that this rank added, in its order. Ranks that share a vertex give it the same numbers.',
     'DistributedScene::stats':
@@ -515,12 +507,10 @@ CONTRACTS = {
         'Takes the memory of this result out of the scene: its spans stay valid as long as what is returned. `result` is then empty, as before the first step, and the next `detect` takes new memory; events go on. Call it before the next `detect` to keep a result without a copy of its own. O(size of the lists), because the scene keeps copies, from which `detect` takes the contacts of objects that do not move.',
     'Scene::max_step':
         'The largest safe part of the step, 0 to 1, and the pair that ends it: the time of the first impact, or 1 without one. Never later than the true first contact. Elements that touch at the start end it there only where their surfaces meet in the step, as for `collision_free_step`. Elements within the separation at the start do not end it when they part, as with `ImpactOptions.skip_parting`. Bodies that already cut through each other at the start do not shorten it. Throws `Error` as `earliest_impact` does.',
-    'Scene::name':
-        'ascending',
     'Scene::objects':
         'ascending',
     'Scene::options':
-        'The options of an object, with all changes since it was added.',
+        'The options of an object, with its name in messages and results and all changes since it was added.',
     'Scene::overlaps':
         'All triangles that overlap each box or sphere, ordered by query, object and triangle. A box or sphere with a number that is not finite, a box with min > max, and a sphere with a negative radius overlap nothing.',
     'Scene::position':
@@ -531,28 +521,18 @@ CONTRACTS = {
         'The result of the last `detect`.',
     'Scene::search':
         'As `detect`, but apart from the steps of the scene: `result`, `verify` and the events do not change, and the result has no events and no manifolds. For a search within a step, for example of a solver that tries out paths. Tests only the pairs of objects that `only` accepts, all when it is empty; for an object with self-collision, it gets the same object twice. The result is valid until the next `search`. The first call takes memory for the answers; the objects and their octrees are those of the scene. Throws `Error` as `detect` does, and when manifolds are requested.',
-    'Scene::set_group':
-        'Changes `ObjectOptions.group` and `mask`, O(1).',
-    'Scene::set_margin':
-        'Changes `ObjectOptions.margin`, O(1). Throws `Error` when it is out of range.',
-    'Scene::set_min_separation':
-        'Changes `ObjectOptions.min_separation`, O(1). Throws `Error` when it is out of range.',
     'Scene::set_motion':
         'Sets a path for continuous contacts: every vertex moves straight from its position in `from` (t = 0) to its position in `to` (t = 1). Copies both, O(n). The path stays until another call moves the object; all other calls place it at rest. Everything except continuous contacts uses the end of the path. Throws `Error` as `set_positions` does, and when one view is `float` and the other `double`.',
     'Scene::set_observer':
         'Sets a function that `detect` calls at its end, in the same thread, unless the call was stopped; an empty function removes it. It reads the scene and its `result`, and must not change the scene. What it throws leaves `detect`, and the result stays. Without an observer, this costs nothing.',
+    'Scene::set_options':
+        'Changes the options that have a value, O(1): `{.is_static = false}` lets a static object move. Values that the options already have change nothing. Throws `Error` when a value is out of range.',
     'Scene::set_pair_filter':
         'Sets a function that excludes pairs of objects; an empty function removes it. See `PairFilter`. When it excludes all pairs whose volumes overlap, `detect` also asks for others, until it accepts one.',
     'Scene::set_positions':
-        "Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Replaces earlier transforms, translations and paths. Throws `Error` when the number of positions differs from the mesh.",
-    'Scene::set_self_collision':
-        'Changes `ObjectOptions.self_collision`, O(1).',
-    'Scene::set_static':
-        'Changes `ObjectOptions.is_static`, O(1). Call it with false to move a static object.',
+        "Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Replaces earlier transforms, translations and paths. Throws `Error` when the number of positions differs from the mesh. The bounds are the lowest and the highest coordinates of the positions. With them and `ComparisonOptions.lazy_refit`, `detect` does not read the vertices of an object that meets no other one. All positions must be finite and within the bounds: nothing checks that, and otherwise `detect` misses contacts. Throws `Error` when a bound is not finite.",
     'Scene::set_transform':
         'Places the positions that were last set, or those of `add`. Replaces earlier transforms and translations. O(1) when only the translation changes, O(n) otherwise. A negative determinant mirrors the object: curves and manifolds see its triangles turned over, so that they keep their outer side. Throws `Error` for a solid when the matrix is singular. The signs of determinants are exact.',
-    'Scene::set_user_data':
-        'Changes `ObjectOptions.user_data`, O(1).',
     'Scene::set_vertex_groups':
         'Gives each vertex a group and a mask, as bits. Two vertices may touch when the group of each has a bit in common with the mask of the other; for objects without groups, all bits are set. `detect`, `verify` and safe steps leave out two triangles or elements when no vertex of one may touch a vertex of the other. Queries do not read the groups. O(n). Empty lists remove them. Throws `Error` when the lists have not one number for each vertex.',
     'Scene::set_vertices':
@@ -562,13 +542,11 @@ CONTRACTS = {
     'Scene::translate':
         'Moves the object by `offset` in O(1), without reading its vertices. Each coordinate becomes fl(position + D) in double. D is the translation of the last `set_transform` plus all offsets since it, or since the positions were last set.',
     'Scene::triangle_count':
-        '`ObjectOptions.user_data`',
-    'Scene::user_data':
-        '`ObjectOptions.user_data`',
+        'of its mesh',
     'Scene::vertex_count':
-        '`ObjectOptions.user_data`',
+        'of its mesh',
     'Scene::vertices_of':
-        'The vertex ids of the element or triangle of a contact, O(1), in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners. Throws `Error` when the object of a triangle was removed.',
+        'The vertex ids of one side of a `Contact`, `ContinuousContact`, `ProximityPair` or `LimitingPair`, O(1), in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners. Throws `Error` when the object of a triangle was removed.',
     'SceneInspector::bounds':
         'The box of the object in the last `detect`; empty when no vertex is finite.',
     'SceneInspector::candidates':

@@ -63,24 +63,24 @@ class Handle:
             self._id, _arrays.ids(groups, "groups"), _arrays.ids(masks, "masks")
         )
 
-    @contract("Scene::set_static")
     def set_static(self, static: bool) -> None:
+        """Changes whether the object is static. Call it with False to move a static object."""
         self._scene._core.set_static(self._id, _arrays.truth(static, "static"))
 
-    @contract("Scene::set_group")
     def set_group(self, group: int, mask: int = 0xFFFFFFFF) -> None:
+        """Changes the options `group` and `mask`."""
         self._scene._core.set_group(self._id, _arrays.count(group, "group"), _arrays.count(mask, "mask"))
 
-    @contract("Scene::set_margin")
     def set_margin(self, margin: float) -> None:
+        """Changes the option `margin`."""
         self._scene._core.set_margin(self._id, _arrays.number(margin, "margin"))
 
-    @contract("Scene::set_min_separation")
     def set_min_separation(self, separation: float) -> None:
+        """Changes the option `min_separation`."""
         self._scene._core.set_min_separation(self._id, _arrays.number(separation, "separation"))
 
-    @contract("Scene::set_self_collision")
     def set_self_collision(self, enabled: bool) -> None:
+        """Changes the option `self_collision`."""
         self._scene._core.set_self_collision(self._id, _arrays.truth(enabled, "enabled"))
 
     @contract("Scene::remove")

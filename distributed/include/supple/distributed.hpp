@@ -112,19 +112,11 @@ class DistributedScene {
   /// As `Scene::set_motion`.
   void set_motion(ObjectId id, PositionsView from, PositionsView to);
 
-  // Each rank that has a part of the object makes these calls. The next collective call sends the object's
-  // topology again and rebuilds its octrees.
+  // Each rank that has a part of the object makes these calls. When they change something, the next
+  // collective call sends the object's topology again and rebuilds its octrees.
 
-  /// As `Scene::set_static`.
-  void set_static(ObjectId id, bool is_static);
-  /// As `Scene::set_group`.
-  void set_group(ObjectId id, std::uint32_t group, std::uint32_t mask);
-  /// As `Scene::set_margin`.
-  void set_margin(ObjectId id, double margin);
-  /// As `Scene::set_min_separation`.
-  void set_min_separation(ObjectId id, double separation);
-  /// As `Scene::set_self_collision`.
-  void set_self_collision(ObjectId id, bool enabled);
+  /// As `Scene::set_options`.
+  void set_options(ObjectId id, const ObjectChanges& changes);
   /// As `Scene::set_vertex_groups` for the vertices that this rank added, in its order. Ranks that share a
   /// vertex give it the same numbers.
   void set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,

@@ -22,16 +22,17 @@ void check_body(const Scene& scene, const ResponseBody& body) {
   const std::size_t vertices = scene.vertex_count(body.object);
   const auto check_count = [&](const char* what, std::size_t count) {
     if (count != vertices) {
-      fail("respond: " + scene.name(body.object) + " has " + std::to_string(vertices) + " vertices and " +
-           std::to_string(count) + " " + what + "; give one for each vertex");
+      fail("respond: " + scene.options(body.object).name + " has " + std::to_string(vertices) +
+           " vertices and " + std::to_string(count) + " " + what + "; give one for each vertex");
     }
   };
   check_count("velocities", body.velocities.size());
   if (!body.masses.empty()) check_count("masses", body.masses.size());
   for (std::size_t v = 0; v < body.masses.size(); ++v) {
     if (!(body.masses[v] > 0)) {
-      fail("respond: the mass of vertex " + std::to_string(v) + " of " + scene.name(body.object) + " is " +
-           text_of(body.masses[v]) + "; it must be above 0, or infinite for a vertex that does not react");
+      fail("respond: the mass of vertex " + std::to_string(v) + " of " + scene.options(body.object).name +
+           " is " + text_of(body.masses[v]) +
+           "; it must be above 0, or infinite for a vertex that does not react");
     }
   }
 }
@@ -41,7 +42,7 @@ void check_bodies(const Scene& scene, std::span<const ResponseBody> bodies) {
     check_body(scene, bodies[i]);
     for (std::size_t j = 0; j < i; ++j) {
       if (bodies[i].object == bodies[j].object)
-        fail("respond: " + scene.name(bodies[i].object) + " is listed twice; list each object once");
+        fail("respond: " + scene.options(bodies[i].object).name + " is listed twice; list each object once");
     }
   }
 }

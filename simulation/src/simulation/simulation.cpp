@@ -147,7 +147,7 @@ SimulatedObject& Simulation::Implementation::object(ObjectId id, const char* cal
 void Simulation::Implementation::set_positions(ObjectId id, std::span<const Vec3d> positions) {
   SimulatedObject& found = object(id, "set_positions");
   if (found.function != nullptr) {
-    fail("set_positions: " + scene.name(id) +
+    fail("set_positions: " + scene.options(id).name +
          " is moved by a function, so its positions cannot be set; let the function write other positions");
   }
   scene.set_positions(id, positions);
@@ -253,7 +253,7 @@ std::optional<MotionError> Simulation::Implementation::step_bodies() {
     if (object == nullptr || object->moving_body == nullptr || !object->has_failed()) continue;
     undo_step_of_bodies();
     if (object->exception != nullptr) std::rethrow_exception(object->exception);
-    const std::string& name = scene.name(object->id);
+    const std::string& name = scene.options(object->id).name;
     const std::uint64_t step = steps + 1;
     return MotionError(name + " in step " + std::to_string(step) + ": " + *object->failure, name, step);
   }
@@ -357,11 +357,9 @@ void Simulation::Implementation::place_in_scene() {
 }
 
 void Simulation::Implementation::set_positions_in_scene(const SimulatedObject& object) {
-  if (options.fused_refit && object.moving_body != nullptr) {
-    if (const auto bounds = object.moving_body->body.bounds())
-      return scene.set_positions(object.id, object.positions(), *bounds);
-  }
-  scene.set_positions(object.id, object.positions());
+  const bool has_bounds = options.fused_refit && object.moving_body != nullptr;
+  scene.set_positions(object.id, object.positions(),
+                      has_bounds ? object.moving_body->body.bounds() : std::nullopt);
 }
 
 void Simulation::Implementation::prepare_next_step() {

@@ -33,8 +33,8 @@ std::array<double, 3> barycentric_of(const Vec3d& point, const std::array<Vec3d,
 
 }  // namespace
 
-Scene::PairWeights Scene::weights_of(const Contact& contact) const {
-  const std::span<const ContactPoint> all = result().contact_points;
+detail::PairWeights detail::weights_of(const Scene& scene, const Contact& contact) {
+  const std::span<const ContactPoint> all = scene.result().contact_points;
   if (all.empty()) return {centre, centre};
   if (contact.point_count == 0 || contact.first_point + std::size_t{contact.point_count} > all.size())
     fail("for_each_vertex: the contact has no points in the result; take one of the last detect");
@@ -43,10 +43,10 @@ Scene::PairWeights Scene::weights_of(const Contact& contact) const {
     mean += point.position / static_cast<double>(contact.point_count);
   const auto weights = [&](ContactSide side) {
     const bool is_a = side == ContactSide::a;
-    const ElementVertices vertices = vertices_of(contact, side);
+    const ElementVertices vertices = scene.vertices_of(contact, side);
     std::array<Vec3d, 3> corners;
     for (std::size_t i = 0; i < 3; ++i)
-      corners[i] = position(is_a ? contact.object_a : contact.object_b, vertices[i]);
+      corners[i] = scene.position(is_a ? contact.object_a : contact.object_b, vertices[i]);
     return barycentric_of(mean, corners);
   };
   return {weights(ContactSide::a), weights(ContactSide::b)};

@@ -41,10 +41,10 @@ ElementVertices element_vertices(const World& world, ObjectId id, FeatureKind ki
 
 }  // namespace
 
-Scene::Scene(const SceneOptions& options) : implementation_(std::make_unique<Implementation>(options)) {}
-Scene::~Scene() = default;
-Scene::Scene(Scene&&) noexcept = default;
-Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::Scene(const SceneOptions& options) : implementation_(new Implementation(options)) {}
+void Scene::Deleter::operator()(Implementation* implementation) const {
+  delete implementation;
+}
 
 ObjectId Scene::add(const TriangleMesh& mesh, const ObjectOptions& options) {
   ObjectOptions with_elements = options;
@@ -59,13 +59,12 @@ void Scene::remove(ObjectId object) {
   implementation_->remove(object);
 }
 
-void Scene::set_positions(ObjectId object, PositionsView positions) {
-  implementation_->world.set_positions(object, positions);
-}
-
-void Scene::set_positions(ObjectId object, PositionsView positions, const std::array<Vec3d, 2>& bounds) {
-  for (const Vec3d& corner : bounds) check_finite(corner, "set_positions", "bounds");
-  implementation_->world.set_positions(object, positions, &bounds);
+void Scene::set_positions(ObjectId object, PositionsView positions,
+                          const std::optional<std::array<Vec3d, 2>>& bounds) {
+  if (bounds) {
+    for (const Vec3d& corner : *bounds) check_finite(corner, "set_positions", "bounds");
+  }
+  implementation_->world.set_positions(object, positions, bounds);
 }
 void Scene::set_vertices(ObjectId object, std::span<const std::uint32_t> vertices, PositionsView positions) {
   implementation_->world.set_vertices(object, vertices, positions);
@@ -91,34 +90,13 @@ void Scene::set_transform(ObjectId object, const RigidTransform& transform) {
   implementation_->world.set_transform(object, transform);
 }
 
-void Scene::set_static(ObjectId object, bool is_static) {
-  implementation_->world.set_static(object, is_static);
-}
-
-void Scene::set_group(ObjectId object, std::uint32_t group, std::uint32_t mask) {
-  implementation_->world.set_group(object, group, mask);
-}
-
-void Scene::set_margin(ObjectId object, double margin) {
-  implementation_->world.set_distance(object, &ObjectOptions::margin, margin, "set_margin");
-}
-
-void Scene::set_min_separation(ObjectId object, double separation) {
-  implementation_->world.set_distance(object, &ObjectOptions::min_separation, separation,
-                                      "set_min_separation");
+void Scene::set_options(ObjectId object, const ObjectChanges& changes) {
+  implementation_->world.set_options(object, changes);
 }
 
 void Scene::set_vertex_groups(ObjectId object, std::span<const std::uint32_t> groups,
                               std::span<const std::uint32_t> masks) {
   implementation_->world.set_vertex_groups(object, groups, masks);
-}
-
-void Scene::set_user_data(ObjectId object, std::uint64_t data) {
-  implementation_->world.object(object, "set_user_data").options.user_data = data;
-}
-
-void Scene::set_self_collision(ObjectId object, bool enabled) {
-  implementation_->world.set_self_collision(object, enabled);
 }
 
 void Scene::set_pair_filter(PairFilter filter) {
@@ -169,16 +147,8 @@ bool Scene::contains(ObjectId object) const {
   return implementation_->world.contains(object);
 }
 
-const std::string& Scene::name(ObjectId object) const {
-  return implementation_->world.object(object, "name").options.name;
-}
-
 const ObjectOptions& Scene::options(ObjectId object) const {
   return implementation_->world.object(object, "options").options;
-}
-
-std::uint64_t Scene::user_data(ObjectId object) const {
-  return implementation_->world.object(object, "user_data").options.user_data;
 }
 
 std::size_t Scene::vertex_count(ObjectId object) const {
@@ -195,30 +165,31 @@ Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
   return found.placement().position(vertex);
 }
 
-ElementVertices Scene::vertices_of(const LimitingPair& pair, ContactSide side) const {
-  const bool is_a = side == ContactSide::a;
-  const std::array<std::uint32_t, 2>& element = is_a ? pair.element_a : pair.element_b;
-  return element_vertices(implementation_->world, is_a ? pair.object_a : pair.object_b,
-                          feature_kinds(pair.kind)[is_a ? 0 : 1], element);
-}
-ElementVertices Scene::vertices_of(const ContinuousContact& contact, ContactSide side) const {
-  return vertices_of(pair_of_contact(contact), side);
-}
-ElementVertices Scene::vertices_of(const Contact& contact, ContactSide side) const {
-  const bool is_a = side == ContactSide::a;
-  return triangle_vertices(implementation_->world, is_a ? contact.object_a : contact.object_b,
-                           is_a ? contact.triangle_a : contact.triangle_b);
-}
-
-ElementVertices Scene::vertices_of(const ProximityPair& pair, ContactSide side) const {
-  const bool is_a = side == ContactSide::a;
-  const std::array<std::uint32_t, 2>& element = is_a ? pair.element_a : pair.element_b;
-  return element_vertices(implementation_->world, is_a ? pair.object_a : pair.object_b,
-                          is_a ? pair.kind_a : pair.kind_b, element);
-}
-
 const SceneOptions& Scene::options() const {
   return implementation_->world.options;
 }
+
+namespace detail {
+
+ElementVertices vertices_of(const Scene& scene, const LimitingPair& pair, ContactSide side) {
+  const bool is_a = side == ContactSide::a;
+  return element_vertices(SceneAccess::of(scene).world, is_a ? pair.object_a : pair.object_b,
+                          feature_kinds(pair.kind)[is_a ? 0 : 1], is_a ? pair.element_a : pair.element_b);
+}
+ElementVertices vertices_of(const Scene& scene, const ContinuousContact& contact, ContactSide side) {
+  return vertices_of(scene, pair_of_contact(contact), side);
+}
+ElementVertices vertices_of(const Scene& scene, const Contact& contact, ContactSide side) {
+  const bool is_a = side == ContactSide::a;
+  return triangle_vertices(SceneAccess::of(scene).world, is_a ? contact.object_a : contact.object_b,
+                           is_a ? contact.triangle_a : contact.triangle_b);
+}
+ElementVertices vertices_of(const Scene& scene, const ProximityPair& pair, ContactSide side) {
+  const bool is_a = side == ContactSide::a;
+  return element_vertices(SceneAccess::of(scene).world, is_a ? pair.object_a : pair.object_b,
+                          is_a ? pair.kind_a : pair.kind_b, is_a ? pair.element_a : pair.element_b);
+}
+
+}  // namespace detail
 
 }  // namespace supple

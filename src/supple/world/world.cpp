@@ -51,6 +51,26 @@ void check_triangle(const WorldObject& object, std::uint32_t triangle, const cha
        "; it has " + std::to_string(count) + ", numbered from 0");
 }
 
+ChangedOptions change_options(ObjectOptions& options, const ObjectChanges& changes) {
+  check(ObjectOptions{.margin = changes.margin.value_or(0),
+                      .min_separation = changes.min_separation.value_or(0)},
+        "set_options");
+  ChangedOptions changed;
+  const auto set = [](auto& option, const auto& value, bool& differs) {
+    if (!value || *value == option) return;
+    option = *value;
+    differs = true;
+  };
+  set(options.margin, changes.margin, changed.distances);
+  set(options.min_separation, changes.min_separation, changed.distances);
+  set(options.self_collision, changes.self_collision, changed.pairs);
+  set(options.is_static, changes.is_static, changed.pairs);
+  set(options.group, changes.group, changed.pairs);
+  set(options.mask, changes.mask, changed.pairs);
+  options.user_data = changes.user_data.value_or(options.user_data);
+  return changed;
+}
+
 World::World(const SceneOptions& scene_options)
     : options(checked(scene_options)), parallel(scene_options.threads) {}
 
@@ -105,7 +125,7 @@ WorldObject& World::movable_object(ObjectId id, const char* call) const {
   WorldObject& found = object(id, call);
   if (found.options.is_static) {
     fail(std::string(call) + ": " + found.options.name +
-         " is static and cannot move; call set_static(id, false) first");
+         " is static and cannot move; set its option is_static to false first");
   }
   return found;
 }
@@ -117,11 +137,12 @@ ObjectPair World::two_objects(ObjectId a, ObjectId b, const char* call) const {
   return a < b ? ObjectPair{a, b} : ObjectPair{b, a};
 }
 
-void World::set_positions(ObjectId id, const PositionsView& positions, const std::array<Vec3d, 2>* bounds) {
+void World::set_positions(ObjectId id, const PositionsView& positions,
+                          const std::optional<std::array<Vec3d, 2>>& bounds) {
   WorldObject& found = movable_object(id, "set_positions");
   check_count(found, positions.size(), "set_positions");
   found.move().set_positions(positions, parallel);
-  if (bounds != nullptr) {
+  if (bounds) {
     Aabb box;
     for (const Vec3d& corner : *bounds) extend(box, corner);
     found.set_bounds(box);
@@ -179,16 +200,11 @@ void World::set_transform(ObjectId id, const RigidTransform& transform) {
   mark_changed();
 }
 
-void World::set_static(ObjectId id, bool is_static) {
-  object(id, "set_static").options.is_static = is_static;
-  mark_changed();
-}
-
-void World::set_group(ObjectId id, std::uint32_t group, std::uint32_t mask) {
-  ObjectOptions& changed = object(id, "set_group").options;
-  changed.group = group;
-  changed.mask = mask;
-  mark_changed();
+void World::set_options(ObjectId id, const ObjectChanges& changes) {
+  WorldObject& found = object(id, "set_options");
+  const auto [distances, pairs] = change_options(found.options, changes);
+  if (distances) found.move();  // so that its pairs are found again
+  if (distances || pairs) mark_changed();
 }
 
 void World::set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
@@ -201,21 +217,6 @@ void World::set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups
          ", which has " + std::to_string(count) + " vertices; give a group and a mask for each vertex");
   }
   found.set_vertex_groups(groups, masks);
-  found.move();  // so that its pairs are found again
-  mark_changed();
-}
-
-void World::set_self_collision(ObjectId id, bool enabled) {
-  object(id, "set_self_collision").options.self_collision = enabled;
-  mark_changed();
-}
-
-void World::set_distance(ObjectId id, double ObjectOptions::*member, double distance, const char* call) {
-  WorldObject& found = object(id, call);
-  ObjectOptions changed = found.options;
-  changed.*member = distance;
-  check(changed, call);
-  found.options.*member = distance;
   found.move();  // so that its pairs are found again
   mark_changed();
 }

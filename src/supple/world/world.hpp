@@ -54,21 +54,17 @@ class World {
   /// Both objects, the smaller id first; throws an error when they are the same.
   ObjectPair two_objects(ObjectId a, ObjectId b, const char* call) const;
 
-  /// `bounds`, if any, are the lowest and highest coordinates of the positions, which are finite.
+  /// The bounds, if any, are finite.
   void set_positions(ObjectId id, const PositionsView& positions,
-                     const std::array<Vec3d, 2>* bounds = nullptr);
+                     const std::optional<std::array<Vec3d, 2>>& bounds = {});
   void set_vertices(ObjectId id, std::span<const std::uint32_t> vertices, const PositionsView& positions);
   void share_positions(ObjectId id, const PositionsView& positions);
   void translate(ObjectId id, const Vec3d& offset);
   void set_transform(ObjectId id, const RigidTransform& transform);
   void set_motion(ObjectId id, const PositionsView& from, const PositionsView& to);
-  void set_static(ObjectId id, bool is_static);
-  void set_group(ObjectId id, std::uint32_t group, std::uint32_t mask);
+  void set_options(ObjectId id, const ObjectChanges& changes);
   void set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
                          std::span<const std::uint32_t> masks);
-  void set_self_collision(ObjectId id, bool enabled);
-  /// Changes a distance of the object's options.
-  void set_distance(ObjectId id, double ObjectOptions::*member, double distance, const char* call);
   void set_filter(PairFilter filter);
 
   /// Increases with each change of what a search may find.
@@ -129,6 +125,14 @@ class World {
   std::vector<NodePair> node_pairs_;                     // scratch memory
   std::vector<ChildPair> children_;
 };
+
+/// Which options got other values.
+struct ChangedOptions {
+  bool distances = false;  ///< the margin or the minimum separation
+  bool pairs = false;      ///< which objects may touch
+};
+/// Gives the options the new values, after a check of them.
+ChangedOptions change_options(ObjectOptions& options, const ObjectChanges& changes);
 
 /// Throws an error that names `call` when the object has no such vertex or triangle.
 void check_vertex(const WorldObject& object, std::uint32_t vertex, const char* call);

@@ -624,14 +624,14 @@ TEST(InspectionOfScenes, FollowsFiltersGroupsAndRemovals) {
   const TriangleMesh ball = make_icosphere(2);
   Known known;
   const ObjectId a = known.add(ball), b = known.add(ball), c = known.add(ball), d = known.add(ball);
-  known.scene.set_group(b, 2, 2);
+  known.scene.set_options(b, {.group = 2, .mask = 2});
   known.scene.set_pair_filter([&](ObjectId p, ObjectId q) { return !(p == a && q == c); });
   known.scene.detect();
   EXPECT_EQ(SceneInspector(known.scene).explain(a, 0, b, 0).stage, PairStage::not_tested);
   EXPECT_EQ(SceneInspector(known.scene).explain(a, 0, c, 0).stage, PairStage::not_tested);
   EXPECT_EQ(SceneInspector(known.scene).explain(a, 0, d, 0).stage, PairStage::contact);
   EXPECT_EQ(SceneInspector(known.scene).explain(a, 3, a, 3).stage, PairStage::shared_vertex);
-  known.scene.set_self_collision(a, false);
+  known.scene.set_options(a, {.self_collision = false});
   known.remove(c);
   EXPECT_THROW(SceneInspector(known.scene).explain(a, 0, d, 0), Error) << "the scene changed since detect";
   EXPECT_THROW(SceneInspector(known.scene).candidates(1), Error);

@@ -195,7 +195,7 @@ TEST(NodePairs, AreNoneWhenTheBroadPhaseOrAFilterExcludesThePair) {
   scene.detect();
   EXPECT_FALSE(inspector.node_pairs(a, b).pairs.empty());
   EXPECT_EQ(inspector.node_pairs(a, a).level_count(), 0u) << "self-collision is off";
-  scene.set_self_collision(a, true);
+  scene.set_options(a, {.self_collision = true});
   scene.detect();
   EXPECT_GT(inspector.node_pairs(a, a).pairs.size(), inspector.node_pairs(a, b).level_count());
   scene.translate(b, {0, 5, 0});

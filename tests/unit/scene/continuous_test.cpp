@@ -352,7 +352,7 @@ TEST(ContinuousErrors, SayWhatToDo) {
   EXPECT_NE(
       message_of([&] { scene.set_motion(id, Vertices(3), Vertices(2)); }).find("2 positions for triangle"),
       std::string::npos);
-  scene.set_static(id, true);
+  scene.set_options(id, {.is_static = true});
   EXPECT_NE(message_of([&] { scene.set_motion(id, Vertices(3), Vertices(3)); }).find("static"),
             std::string::npos);
   EXPECT_NE(message_of([&] { verify(scene); }).find("call detect first"), std::string::npos);

@@ -173,13 +173,13 @@ TEST_P(ElementSearch, AddsTheSeparationsOfObjects) {
   Scene scene = moving_scene(GetParam(), {.contacts = continuous, .impact = {.min_separation = part}});
   const std::vector<ObjectId> objects = scene.objects();
   for (std::size_t i = 0; i < objects.size(); ++i)
-    scene.set_min_separation(objects[i], 2 * part * static_cast<double>(i));
+    scene.set_options(objects[i], {.min_separation = 2 * part * static_cast<double>(i)});
   scene.detect();
   expect_agreement(scene);
-  for (const ObjectId object : objects) scene.set_min_separation(object, 2 * part);
+  for (const ObjectId object : objects) scene.set_options(object, {.min_separation = 2 * part});
   const auto contacts = scene.detect().continuous_contacts;
   const std::vector of_objects(contacts.begin(), contacts.end());
-  for (const ObjectId object : objects) scene.set_min_separation(object, 0);
+  for (const ObjectId object : objects) scene.set_options(object, {.min_separation = 0});
   DetectRequest request;
   request.impact = ImpactOptions{.min_separation = part + (2 * part + 2 * part)};
   const auto same = scene.detect(request).continuous_contacts;

@@ -201,7 +201,7 @@ TEST(LazyRefit, TakesBoundsThatTheMotionFound) {
     for (Scene* const scene : {&plain, &given}) {
       if (scene == &plain) scene->set_positions(a, large.positions);
       if (scene == &given)
-        scene->set_positions(a, large.positions, {Vec3d{-1e29, -1e29, -1e29}, Vec3d{1e29, 1e29, 1e29}});
+        scene->set_positions(a, large.positions, {{Vec3d{-1e29, -1e29, -1e29}, Vec3d{1e29, 1e29, 1e29}}});
       scene->set_positions(b, large.positions);
       for (const ObjectId id : {a, b}) scene->translate(id, {2e30, 0, 0});
     }
@@ -209,7 +209,7 @@ TEST(LazyRefit, TakesBoundsThatTheMotionFound) {
     EXPECT_FALSE(given.result().contacts.empty());
     EXPECT_TRUE(verify(given).agrees());
     constexpr double inf = std::numeric_limits<double>::infinity();
-    EXPECT_THROW(given.set_positions(a, ball.positions, {Vec3d{-inf, 0, 0}, Vec3d{1, 1, 1}}), Error);
+    EXPECT_THROW(given.set_positions(a, ball.positions, {{Vec3d{-inf, 0, 0}, Vec3d{1, 1, 1}}}), Error);
   }
 }
 

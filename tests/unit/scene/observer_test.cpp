@@ -67,8 +67,8 @@ TEST(Observer, SeesTheStepsOfASimulation) {
 TEST(OptionsOfObject, HaveLaterChanges) {
   Scene scene;
   const ObjectId ball = scene.add(make_icosphere(1), {.name = "ball", .margin = 0.5});
-  scene.set_margin(ball, 0.25);
-  scene.set_static(ball, true);
+  scene.set_options(ball, {.margin = 0.25});
+  scene.set_options(ball, {.is_static = true});
   EXPECT_EQ(scene.options(ball).name, "ball");
   EXPECT_EQ(scene.options(ball).margin, 0.25);
   EXPECT_TRUE(scene.options(ball).is_static);

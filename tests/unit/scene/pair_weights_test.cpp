@@ -136,15 +136,15 @@ TEST(UserData, StaysWithItsObject) {
   Scene scene;
   const TriangleMesh ball = make_icosphere(1);
   const ObjectId a = scene.add(ball, {.user_data = 0xfedcba9876543210u}), b = scene.add(ball);
-  EXPECT_EQ(scene.user_data(a), 0xfedcba9876543210u);
-  EXPECT_EQ(scene.user_data(b), 0u);
+  EXPECT_EQ(scene.options(a).user_data, 0xfedcba9876543210u);
+  EXPECT_EQ(scene.options(b).user_data, 0u);
   scene.detect();
-  scene.set_user_data(b, 7);
-  EXPECT_EQ(scene.user_data(b), 7u);
+  scene.set_options(b, {.user_data = 7});
+  EXPECT_EQ(scene.options(b).user_data, 7u);
   EXPECT_TRUE(verify(scene).agrees()) << "the data is no change of the scene";
   scene.remove(a);
-  EXPECT_THROW(scene.user_data(a), Error);
-  EXPECT_EQ(scene.user_data(scene.add(ball)), 0u);
+  EXPECT_THROW(scene.options(a).user_data, Error);
+  EXPECT_EQ(scene.options(scene.add(ball)).user_data, 0u);
 }
 
 TEST(Quaternion, TurnsByItsAngle) {

@@ -579,11 +579,11 @@ class LifeOfSolids {
         return scene_.remove(id);
       case 1:
         body.options.self_collision = !body.options.self_collision;
-        return scene_.set_self_collision(id, body.options.self_collision);
+        return scene_.set_options(id, {.self_collision = body.options.self_collision});
       case 2:
         body.options.group = 1 + random_.below(3);
         body.options.mask = 1 + random_.below(3);
-        return scene_.set_group(id, body.options.group, body.options.mask);
+        return scene_.set_options(id, {.group = body.options.group, .mask = body.options.mask});
       case 3:
         body.positions = body.mesh.positions;
         for (Vec3d& p : body.positions) p = p + random_.vector(0.1);

@@ -99,9 +99,9 @@ TEST(ProximityPairs, CountTheSumOfTheMarginsClosed) {
     EXPECT_EQ(pair.distance, 0.375);
     EXPECT_EQ(pair.normal, (Vec3d{0, 0, -1})) << "from b to a";
   }
-  scene.set_margin(a, 0.25 - 0x1p-53);
+  scene.set_options(a, {.margin = 0.25 - 0x1p-53});
   EXPECT_TRUE(scene.detect().proximity_pairs.empty());
-  scene.set_margin(b, 0.2);
+  scene.set_options(b, {.margin = 0.2});
   EXPECT_FALSE(scene.detect().proximity_pairs.empty());
 }
 
@@ -223,8 +223,8 @@ TEST(ProximityPairs, RefuseMarginsOutOfRange) {
        {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     EXPECT_THROW(scene.add(triangle, {.margin = margin}), Error) << margin;
   const ObjectId object = scene.add(triangle);
-  EXPECT_THROW(scene.set_margin(object, -1), Error);
-  EXPECT_THROW(scene.set_margin({7, 0}, 1), Error);
+  EXPECT_THROW(scene.set_options(object, {.margin = -1}), Error);
+  EXPECT_THROW(scene.set_options({7, 0}, {.margin = 1}), Error);
   scene.add(TriangleMesh{}, {.margin = 1e308});
   scene.add(triangle, {.margin = 1e308});
   EXPECT_FALSE(scene.detect().proximity_pairs.empty());

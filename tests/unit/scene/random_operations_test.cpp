@@ -97,9 +97,9 @@ struct LivingScene {
         return scene.set_vertices(id, ids, moved);
       }
       case 6:
-        return scene.set_group(id, 1 + random.below(3), 1 + random.below(3));
+        return scene.set_options(id, {.group = 1 + random.below(3), .mask = 1 + random.below(3)});
       case 7:
-        return scene.set_self_collision(id, random.below(2) == 0);
+        return scene.set_options(id, {.self_collision = random.below(2) == 0});
       default:
         return scene.remove(id);
     }

@@ -124,15 +124,15 @@ TEST_P(ResultSpans, OnlyDetectEndsThem) {
   scene.share_positions(d, up);
   scene.translate(a, {0.5, 0, 0});
   scene.set_transform(a, RigidTransform::from_quaternion(1, 2, 3, 4));
-  scene.set_group(a, 3, 3);
-  scene.set_margin(a, 0.2);
-  scene.set_min_separation(a, 0.1);
-  scene.set_user_data(a, 7);
+  scene.set_options(a, {.group = 3, .mask = 3});
+  scene.set_options(a, {.margin = 0.2});
+  scene.set_options(a, {.min_separation = 0.1});
+  scene.set_options(a, {.user_data = 7});
   scene.set_vertex_groups(d, std::vector<std::uint32_t>(ball.positions.size(), 1),
                           std::vector<std::uint32_t>(ball.positions.size(), 1));
-  scene.set_self_collision(b, true);
+  scene.set_options(b, {.self_collision = true});
   scene.set_pair_filter([](ObjectId, ObjectId) { return true; });
-  scene.set_static(d, true);
+  scene.set_options(d, {.is_static = true});
   held.check("changes of objects");
   query();
   scene.remove(c);

@@ -107,7 +107,7 @@ TEST(Scene, AddedFloatsAreReadAsFloats) {
   Scene scene;
   const ObjectId id = scene.add(points, triangles, {.name = "floats"});
   EXPECT_EQ(scene.position(id, 0).x, double{0.1f});
-  EXPECT_EQ(scene.name(id), "floats");
+  EXPECT_EQ(scene.options(id).name, "floats");
 }
 
 TEST(Scene, TransformEqualsPositionsGivenByHand) {
@@ -192,6 +192,40 @@ TEST(Scene, NonFiniteVerticesHideOnlyTheirTriangles) {
   }
 }
 
+TEST(Scene, ChangesOptionsOfAnObject) {
+  Scene scene({.contacts = ContactKinds::proximity});
+  const ObjectId a = scene.add(one_triangle(0), {.name = "a", .margin = 0.5, .group = 2, .user_data = 9});
+  const ObjectId b = scene.add(one_triangle(0.25), {.group = 3});
+  EXPECT_EQ(scene.options(b).name, "triangle");
+  EXPECT_FALSE(scene.detect().proximity_pairs.empty());
+
+  // Values that the options already have, and data of the user, leave the result as it is.
+  scene.set_options(a, {});
+  scene.set_options(a, {.self_collision = false, .is_static = false, .margin = 0.5, .min_separation = 0});
+  scene.set_options(a, {.group = 2, .mask = ~std::uint32_t{0}, .user_data = 10});
+  EXPECT_EQ(differences(scene), "");
+  EXPECT_EQ(scene.options(a).user_data, 10u);
+
+  // A value out of range changes nothing, also no other option.
+  for (const ObjectChanges& wrong : {ObjectChanges{.is_static = true, .margin = -1},
+                                     ObjectChanges{.is_static = true, .min_separation = nan}}) {
+    EXPECT_NE(error_of([&] { scene.set_options(a, wrong); }).find("set_options: ObjectOptions::m"),
+              std::string::npos);
+    EXPECT_FALSE(scene.options(a).is_static);
+  }
+  EXPECT_EQ(differences(scene), "");
+
+  scene.set_options(a, {.margin = 0.25, .group = 4});
+  EXPECT_EQ(scene.options(a).margin, 0.25);
+  EXPECT_EQ(scene.options(a).group, 4u);
+  EXPECT_EQ(scene.options(a).name, "a");
+  EXPECT_THROW(verify(scene), Error);
+  scene.detect();
+  EXPECT_EQ(differences(scene), "");
+  scene.remove(a);
+  EXPECT_THROW(scene.set_options(a, {}), Error);
+}
+
 TEST(Scene, EveryVertexNonFinite) {
   TriangleMesh soup = random_soup(10, 1, 0.3, 3);
   for (Vec3d& p : soup.positions) p.z = nan;
@@ -209,17 +243,17 @@ TEST(Scene, FiltersByGroupMaskStaticAndCallback) {
   const ObjectId b = scene.add(upright_triangle());
   const auto pairs = [&] { return scene.detect().object_pairs.size(); };
   EXPECT_EQ(pairs(), 1u);
-  scene.set_group(a, 2, 4);
+  scene.set_options(a, {.group = 2, .mask = 4});
   EXPECT_EQ(pairs(), 0u);
   EXPECT_EQ(scene.result().volume_events.end.size(), 1u) << "a filter ends the pair";
-  scene.set_group(b, 4, 2);
+  scene.set_options(b, {.group = 4, .mask = 2});
   EXPECT_EQ(pairs(), 1u);
   EXPECT_EQ(scene.result().volume_events.begin.size(), 1u);
-  scene.set_static(a, true);
+  scene.set_options(a, {.is_static = true});
   EXPECT_EQ(pairs(), 1u);
-  scene.set_static(b, true);
+  scene.set_options(b, {.is_static = true});
   EXPECT_EQ(pairs(), 0u);
-  scene.set_static(a, false);
+  scene.set_options(a, {.is_static = false});
   int calls = 0;
   scene.set_pair_filter([&](ObjectId p, ObjectId q) {
     ++calls;
@@ -327,9 +361,9 @@ TEST(Scene, ObjectsSwitchSelfCollisionOnAndOff) {
   EXPECT_GT(contacts, 0u);
   EXPECT_EQ(scene.result().groups.size(), 1u);
   EXPECT_TRUE(scene.result().contact_events.begin.empty()) << "events are only for different objects";
-  scene.set_self_collision(sheet, false);
+  scene.set_options(sheet, {.self_collision = false});
   EXPECT_TRUE(scene.detect().contacts.empty());
-  scene.set_self_collision(sheet, true);
+  scene.set_options(sheet, {.self_collision = true});
   EXPECT_EQ(scene.detect().contacts.size(), contacts);
 }
 
@@ -366,11 +400,11 @@ TEST(Scene, ErrorsSayWhatWhereAndHowToMend) {
   EXPECT_EQ(
       error_of([&] { scene.add(one_triangle(0), {.octree = {.arity = 4}}); }),
       "triangle: a balanced octree has eight children; for an arity of 4, build it regular or bottom-up");
-  scene.set_static(a, true);
+  scene.set_options(a, {.is_static = true});
   EXPECT_EQ(error_of([&] {
               scene.translate(a, {1, 0, 0});
             }),
-            "translate: sheet is static and cannot move; call set_static(id, false) first");
+            "translate: sheet is static and cannot move; set its option is_static to false first");
   scene.remove(a);
   EXPECT_EQ(
       error_of([&] { scene.remove(a); }),

@@ -215,7 +215,7 @@ TEST(SharePositions, ChecksWhatItIsGiven) {
   const ObjectId id = scene.add(make_icosphere(2));
   const std::vector<Vec3f> few(3);
   EXPECT_THROW(scene.share_positions(id, few), Error);
-  scene.set_static(id, true);
+  scene.set_options(id, {.is_static = true});
   const std::vector<Vec3f> enough(scene.vertex_count(id));
   EXPECT_THROW(scene.share_positions(id, enough), Error);
 }

@@ -83,12 +83,12 @@ TEST(Untested, OneObject) {
   EXPECT_EQ(reason_of(scene, ContactKinds::penetration), no_solid);
   scene.set_motion(a, two_triangles.positions, moved(two_triangles, 1).positions);
   EXPECT_EQ(reason_of(scene, ContactKinds::continuous), one_object);
-  scene.set_self_collision(a, true);
+  scene.set_options(a, {.self_collision = true});
   for (const ContactKinds kind :
        {ContactKinds::intersection, ContactKinds::continuous, ContactKinds::proximity})
     EXPECT_EQ(reason_of(scene, kind), std::nullopt);
   scene.add({});  // an object without triangles is no partner
-  scene.set_self_collision(a, false);
+  scene.set_options(a, {.self_collision = false});
   EXPECT_EQ(reason_of(scene, ContactKinds::intersection), one_object);
 }
 
@@ -118,7 +118,7 @@ TEST(Untested, NeedsOfKinds) {
   EXPECT_EQ(all.untested[0], (UntestedKind{ContactKinds::continuous, no_motion}));
   EXPECT_EQ(all.untested[1], (UntestedKind{ContactKinds::proximity, no_margin}));
   EXPECT_EQ(all.untested[2], (UntestedKind{ContactKinds::penetration, no_solid}));
-  scene.set_margin(a, 0.5);
+  scene.set_options(a, {.margin = 0.5});
   scene.add(moved(tetrahedron, 10), {.solid = true});
   scene.set_motion(a, tetrahedron.positions, moved(tetrahedron, 1).positions);
   for (const ContactKinds kind : all_kinds) EXPECT_EQ(reason_of(scene, kind), std::nullopt);
@@ -139,11 +139,11 @@ TEST(Untested, StaticObjectsGroupsAndFilters) {
   const ObjectId a = scene.add(triangle, {.is_static = true});
   const ObjectId b = scene.add(moved(triangle, 5), {.is_static = true});
   EXPECT_EQ(reason_of(scene, ContactKinds::intersection), all_static);
-  scene.set_static(a, false);
+  scene.set_options(a, {.is_static = false});
   EXPECT_EQ(reason_of(scene, ContactKinds::intersection), std::nullopt);
-  scene.set_group(b, 2, 2);  // a has group 1 and every mask
+  scene.set_options(b, {.group = 2, .mask = 2});  // a has group 1 and every mask
   EXPECT_EQ(reason_of(scene, ContactKinds::intersection), groups);
-  scene.set_group(b, 2, 1);
+  scene.set_options(b, {.group = 2, .mask = 1});
   EXPECT_EQ(reason_of(scene, ContactKinds::intersection), std::nullopt);
   scene.set_pair_filter([](ObjectId, ObjectId) { return false; });
   EXPECT_EQ(reason_of(scene, ContactKinds::intersection), filter);
@@ -159,7 +159,7 @@ TEST(Untested, LinesAndPoints) {
   EXPECT_EQ(reason_of(scene, ContactKinds::proximity), std::nullopt);
   EXPECT_EQ(reason_of(scene, ContactKinds::proximity, {.element_kinds = ElementKinds::edge_edge}),
             no_elements);
-  scene.set_self_collision(a, false);
+  scene.set_options(a, {.self_collision = false});
   EXPECT_EQ(reason_of(scene, ContactKinds::proximity), one_object);
 }
 
@@ -198,9 +198,9 @@ TEST(Untested, EqualsTheRulesOfPairs) {
       const std::size_t vertices = member.mesh.positions.size();
       if (random.below(4) == 0) {
         member.mesh.positions[random.below(static_cast<std::uint32_t>(vertices))].x = nan;
-        scene.set_static(id, false);
+        scene.set_options(id, {.is_static = false});
         scene.set_positions(id, member.mesh.positions);
-        scene.set_static(id, member.options.is_static);
+        scene.set_options(id, {.is_static = member.options.is_static});
       }
     }
     std::uint64_t refused = 0;  // pairs, as bits

@@ -136,7 +136,7 @@ void answer_read_object(const SceneView& show, const Source& source, std::uint32
   Extent extent;
   extent.add(source.positions(object));
   json.member("object", object);
-  json.member("name", source.scene().name(source.id(object)));
+  json.member("name", source.scene().options(source.id(object)).name);
   json.member("vertices", std::uint64_t{mesh.positions.size()});
   json.member("triangles", std::uint64_t{mesh.triangles.size()});
   json.key("bounds");

@@ -128,7 +128,7 @@ void answer_explain(const SceneView& show, const Source& source, const Center& c
                     ObjectTriangle b, JsonText& json) {
   const Scene& scene = source.scene();
   const ObjectId id_a = source.id(a[0]), id_b = source.id(b[0]);
-  const Pair pair{show.objects[a[0]], show.objects[b[0]], scene.name(id_a), scene.name(id_b),
+  const Pair pair{show.objects[a[0]], show.objects[b[0]], scene.options(id_a).name, scene.options(id_b).name,
                   SceneInspector(scene).explain(id_a, a[1], id_b, b[1])};
   json.member("stage", word_of(pair.why.stage));
   json.member("text", sentence_of(pair));

@@ -50,7 +50,7 @@ std::optional<std::string> warning_of_long_steps(const LongSteps& steps, double 
 std::optional<std::string> warning_of_long_steps(const Simulation& simulation) {
   const LongSteps steps = find_long_steps(simulation);
   return warning_of_long_steps(steps, simulation.options().time_step,
-                               steps.count > 0 ? simulation.scene().name(steps.worst) : std::string());
+                               steps.count > 0 ? simulation.scene().options(steps.worst).name : "");
 }
 
 }  // namespace supple::viewer

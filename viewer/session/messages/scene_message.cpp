@@ -29,7 +29,7 @@ const MassSpringMotion* body_of(const ViewedObject& object) {
 
 std::string_view name_of(const Stage& stage, std::size_t object) {
   if (stage.show().program != nullptr) return "";
-  return stage.source().scene().name(stage.source().id(object));
+  return stage.source().scene().options(stage.source().id(object)).name;
 }
 
 void add_objects(const Stage& stage, JsonText& json) {

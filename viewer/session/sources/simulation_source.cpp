@@ -74,7 +74,7 @@ std::optional<std::string> SimulationSource::grab(std::size_t object, std::uint3
                                                   std::optional<double> radius) {
   release();
   const ViewedObject& shown = show_.objects[object];
-  const std::string& name = scene().name(ids_[object]);
+  const std::string& name = scene().options(ids_[object]).name;
   if (shown.options.is_static) return name + " is static: it cannot be moved or bent";
   const auto about_vertex = [&] { return "vertex " + std::to_string(vertex) + " of " + name; };
   if (!is_finite(shown.mesh.positions[vertex]) || !is_finite(positions(object)[vertex]))
