@@ -31,6 +31,7 @@ UNMENTIONED = {
     "supple/description.hpp": "serves the programs of this repository; CONTRIBUTING.md says what is made from it",
     "supple/record_descriptions.hpp": "as description.hpp",
     "supple/result_lists.hpp": "as description.hpp",
+    "supple/record_info.hpp": "as description.hpp",
     "supple/utf8.hpp": "makes the text of messages, which users only read",
     "supple/version.hpp": "has the version and nothing else",
     "TrianglePair": "a pair of the narrow phase, which no public function returns",

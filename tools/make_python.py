@@ -15,7 +15,7 @@ import pathlib
 import re
 
 # Enumerations that only the programs of this repository use.
-LEFT_OUT = {"Names", "MatrixItems", "UpAxis", "LengthUnit", "ContactSide", "viewer::FieldElement"}
+LEFT_OUT = {"Names", "ScalarType", "FieldInfo::Kind", "MatrixItems", "UpAxis", "LengthUnit", "ContactSide", "viewer::FieldElement"}
 
 # Classes of C++ that are in Python as they are.
 CLASSES = {"Error", "MotionError"}

@@ -20,7 +20,7 @@
 #include "session/program/attach_descriptions.hpp"
 #include "session/settings.hpp"
 #include "supple/format_descriptions.hpp"
-#include "supple/result_lists.hpp"
+#include "supple/record_info.hpp"
 #include "supple/simulation_descriptions.hpp"
 #include "view_file/view_members.hpp"
 
@@ -163,23 +163,6 @@ void statistics_table() {
   });
 }
 
-/// The type and the width of a member of a record in a recording.
-template <class Value>
-std::pair<const char*, int> stored_as() {
-  if constexpr (std::is_same_v<Value, Vec3d> || std::is_same_v<Value, std::array<double, 3>>)
-    return {"float64", 3};
-  else if constexpr (std::is_same_v<Value, std::array<std::uint32_t, 2>>)
-    return {"uint32", 2};
-  else if constexpr (std::is_same_v<Value, double>)
-    return {"float64", 1};
-  else if constexpr (std::is_same_v<Value, std::uint64_t>)
-    return {"uint64", 1};
-  else if constexpr (std::is_same_v<Value, std::uint32_t> || std::is_same_v<Value, ObjectId>)
-    return {"uint32", 1};
-  else
-    return {"uint8", 1};
-}
-
 const char* unit_of(const Role& role, const char* unit) {
   switch (role.names) {
     case Names::object:
@@ -202,15 +185,17 @@ const char* unit_of(const Role& role, const char* unit) {
 /// A row of the table of datasets, which several datasets of the same form share.
 struct Datasets {
   std::vector<std::string> names;
-  std::pair<const char*, int> type;
-  const char* unit;
+  const FieldInfo* field;
   std::string doc;
 };
 
-void print_datasets(const std::string& group, const Datasets& row) {
-  const std::string shape = row.type.second == 1 ? "(rows)" : fmt::format("(rows, {})", row.type.second);
-  fmt::print("| `{}/{}` | {} | {} | {} | {} |\n", group, fmt::join(row.names, "`, `"), shape, row.type.first,
-             row.unit, row.doc);
+void print_datasets(const char* group, const Datasets& row) {
+  constexpr const char* types[] = {"uint8", "uint8", "uint32", "uint64", "float64"};  // by `ScalarType`
+  const FieldInfo& field = *row.field;
+  const bool is_single = field.count == 1 || field.kind != FieldInfo::Kind::numbers;
+  fmt::print("| `{}/{}` | {} | {} | {} | {} |\n", group, fmt::join(row.names, "`, `"),
+             is_single ? "(rows)" : fmt::format("(rows, {})", field.count),
+             types[static_cast<std::size_t>(field.scalar)], unit_of(field.role, field.unit), row.doc);
 }
 
 /// Whether `next` is the same of object b as `row` of object a: only letters a are b.
@@ -221,59 +206,54 @@ bool is_other_side(const Datasets& row, const Datasets& next) {
 }
 
 /// The datasets of a member of a record; a feature has two.
-template <class Row, class Value>
-Datasets datasets_of(const Field<Row, Value>& field) {
+Datasets datasets_of(const FieldInfo& field) {
   const Role& role = field.role;
-  std::string name = field.key, doc = field.doc;
+  std::string name = field.name, doc = field.doc;
   if (role.names == Names::object) name = std::string("object_") + role.side;
   if (role.names == Names::first_row)
     doc += fmt::format(": a row of `{}`, from the first one of the frame", role.list);
   if (role.names == Names::element) doc += ": v v for a vertex, the two vertices for an edge, t t for a face";
   if (role.names == Names::weights) doc += ": 1 0 0 for a vertex, 1−s s 0 for an edge, three for a face";
-  if constexpr (Worded<Value>) {
-    for (std::size_t i = 0; i < words<Value>.size(); ++i)
-      doc += fmt::format("{} {} {}", i == 0 ? ":" : ",", i, words<Value>[i]);
-  }
-  if (std::is_same_v<Value, bool>) doc += ": 0 no, 1 yes";
   std::vector<std::string> names{name};
-  if (std::is_same_v<Value, Feature>) {
+  if (field.kind == FieldInfo::Kind::feature) {
     doc +=
         ": 0 vertex, 1 edge, 2 face; the index is that of the corner, or of the corner where the edge starts";
     names.push_back(name.insert(std::string_view("feature").size(), "_index"));
+  } else {
+    for (std::size_t i = 0; i < field.words.size(); ++i)
+      doc += fmt::format("{} {} {}", i == 0 ? ":" : ",", i, field.words[i]);
   }
-  return {names, stored_as<Value>(), unit_of(role, field.unit), doc};
+  if (field.scalar == ScalarType::boolean) doc += ": 0 no, 1 yes";
+  return {names, &field, doc};
 }
 
 /// Whether a column is object a or b of its row and nothing more: the row of the list names it then.
-template <class Row, class Value>
-bool is_plain_object(const Field<Row, Value>& field) {
+bool is_plain_object(const FieldInfo& field) {
   const std::string_view doc = field.doc;
   return field.role.names == Names::object && (doc.starts_with("Object a") || doc.starts_with("Object b"));
 }
 
 void lists_table() {
   table("recording_lists", "| Dataset | Shape | Type | Unit | Meaning |", [] {
-    for_each_list([]<class Row>(const ResultList<Row>& list, auto) {
-      const std::string group = list.name;
-      std::string names = fmt::format("`{}/end`", group);
-      if constexpr (Described<Row>)
-        for_each_field<Row>([&](const auto& field) {
-          if (is_plain_object(field)) names += fmt::format(", `object_{}`", field.role.side);
-        });
-      fmt::print("| {} | | | | a row is: {} |\n", names, list.doc);
+    for (const ListInfo& list : list_infos()) {
+      std::string names = fmt::format("`{}/end`", list.name);
       std::vector<Datasets> rows;
-      if constexpr (Described<Row>)
-        for_each_field<Row>([&](const auto& field) {
-          if (is_plain_object(field)) return;
-          Datasets row = datasets_of(field);
-          if (rows.empty() || !is_other_side(rows.back(), row)) return rows.push_back(std::move(row));
-          rows.back().names.insert(rows.back().names.end(), row.names.begin(), row.names.end());
-          rows.back().doc += "; b likewise";
-        });
-      else
-        rows.push_back({{list.value}, stored_as<Row>(), unit_of(list.role, list.unit), ""});
-      for (const Datasets& row : rows) print_datasets(group, row);
-    });
+      for (const FieldInfo& field : list.record.fields) {
+        if (is_plain_object(field)) {
+          names += fmt::format(", `object_{}`", field.role.side);
+          continue;
+        }
+        Datasets row = *list.record.name == 0 ? Datasets{{field.name}, &field, ""} : datasets_of(field);
+        if (rows.empty() || !is_other_side(rows.back(), row)) {
+          rows.push_back(std::move(row));
+          continue;
+        }
+        rows.back().names.insert(rows.back().names.end(), row.names.begin(), row.names.end());
+        rows.back().doc += "; b likewise";
+      }
+      fmt::print("| {} | | | | a row is: {} |\n", names, list.doc);
+      for (const Datasets& row : rows) print_datasets(list.name, row);
+    }
   });
 }
 

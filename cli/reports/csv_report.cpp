@@ -3,68 +3,68 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
-#include <array>
 #include <bit>
+#include <optional>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include "base/text.hpp"
-#include "reports/record_json.hpp"
-#include "supple/result_lists.hpp"
+#include "reports/result_json.hpp"
 
 namespace supple::cli {
 
 namespace {
 
-using Weights = std::array<double, 3>;
-using Element = std::array<std::uint32_t, 2>;
-
-/// Calls `visitor(field)` for each member that has columns.
-template <Described Row, class Visitor>
-void for_each_cell(bool details, Visitor visitor) {
-  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
-    constexpr bool is_detail = std::is_same_v<Value, Vec3d> || std::is_same_v<Value, Weights>;
-    if (!is_of_range(field.role) && (details || !is_detail)) visitor(field);
-  });
+/// Calls `visit(field)` for each member that has columns.
+template <class Visit>
+void for_each_cell(const RecordInfo& record, bool details, Visit visit) {
+  for (const FieldInfo& field : record.fields) {
+    const bool is_detail = field.scalar == ScalarType::float64 && field.count > 1;
+    if (!is_of_range(field.role) && (details || !is_detail)) visit(field);
+  }
 }
 
-/// Calls `visitor(list, member)` for the list of the last of these kinds: with penetration, the intersections
-/// are not the answer.
-template <class Visitor>
-void with_answer(ContactKinds kinds, Visitor visitor) {
+/// The place of the list of the last of these kinds, if any: with penetration, the intersections are not the
+/// answer.
+std::optional<std::size_t> place_of_answer(ContactKinds kinds) {
   const auto last = static_cast<ContactKinds>(std::bit_floor(static_cast<unsigned>(kinds)));
-  if (last == ContactKinds::none) return;
-  for_each_list([&]<class Row>(const ResultList<Row>& list, auto member) {
-    if constexpr (Described<Row>) {
-      if (list.answers == last) visitor(list, member);
-    }
-  });
+  for (std::size_t i = 0; last != ContactKinds::none && i < list_infos().size(); ++i) {
+    if (list_infos()[i].answers == last) return i;
+  }
+  return std::nullopt;
 }
 
-template <Described Row>
-void add_row(fmt::memory_buffer& rows, std::uint64_t frame, const Row& row, bool details) {
+void add_row(fmt::memory_buffer& rows, std::uint64_t frame, const RecordInfo& record, const std::byte* row,
+             bool details) {
   const fmt::appender out(rows);
   fmt::format_to(out, "{}", frame);
-  for_each_cell<Row>(details, [&]<class Value>(const Field<Row, Value>& field) {
-    const Value& value = row.*field.member;
-    if constexpr (std::is_same_v<Value, ObjectId>) {
-      fmt::format_to(out, ",{}", value.index);
-    } else if constexpr (std::is_same_v<Value, Vec3d>) {
-      fmt::format_to(out, ",{},{},{}", value.x, value.y, value.z);
-    } else if constexpr (std::is_same_v<Value, Weights>) {
-      const auto last = static_cast<std::size_t>(kind_of_element(row, field.role.side));
-      for (std::size_t i = 0; i < value.size(); ++i)
-        i <= last ? fmt::format_to(out, ",{}", value[i]) : fmt::format_to(out, ",");
-    } else if constexpr (std::is_same_v<Value, Element>) {
-      const bool is_edge = kind_of_element(row, field.role.side) == FeatureKind::edge;
-      is_edge ? fmt::format_to(out, ",{},{}", value[0], value[1]) : fmt::format_to(out, ",{},", value[0]);
-    } else if constexpr (std::is_same_v<Value, Feature>) {
-      fmt::format_to(out, ",{}", name_of(value));
-    } else if constexpr (Worded<Value>) {
-      fmt::format_to(out, ",{}", word_of(value));
+  for_each_cell(record, details, [&](const FieldInfo& field) {
+    const auto number = [&](std::size_t i) { return number_of(field, row, i); };
+    const Names names = field.role.names;
+    // An element has as many numbers and weights as vertices, a face one number.
+    const auto kind = names == Names::element || names == Names::weights
+                          ? record.kind_of_element(row, field.role.side)
+                          : FeatureKind::vertex;
+    if (field.kind == FieldInfo::Kind::feature) {
+      fmt::format_to(
+          out, ",{}",
+          name_of(Feature{static_cast<FeatureKind>(number(0)), static_cast<std::uint8_t>(number(1))}));
+    } else if (field.scalar == ScalarType::float64) {
+      for (std::size_t i = 0; i < field.count; ++i) {
+        names == Names::weights&& i > static_cast<std::size_t>(kind)
+            ? fmt::format_to(out, ",")
+            : fmt::format_to(out, ",{}", real_number(field, row, i));
+      }
+    } else if (names == Names::element && kind != FeatureKind::edge) {
+      fmt::format_to(out, ",{},", number(0));
+    } else if (names == Names::element) {
+      fmt::format_to(out, ",{},{}", number(0), number(1));
+    } else if (field.scalar == ScalarType::boolean) {
+      fmt::format_to(out, ",{}", number(0) != 0);
+    } else if (!field.words.empty()) {
+      fmt::format_to(out, ",{}", field.words[number(0)]);
     } else {
-      fmt::format_to(out, ",{}", value);
+      fmt::format_to(out, ",{}", number(0));
     }
   });
   rows.push_back('\n');
@@ -74,16 +74,16 @@ void add_row(fmt::memory_buffer& rows, std::uint64_t frame, const Row& row, bool
 
 std::vector<std::string> csv_columns(ContactKinds kinds, bool details) {
   std::vector<std::string> columns{"frame"};
-  with_answer(kinds, [&]<class Row>(const ResultList<Row>&, auto) {
-    for_each_cell<Row>(details, [&]<class Value>(const Field<Row, Value>& field) {
-      std::string_view parts;
-      if constexpr (std::is_same_v<Value, Vec3d>) parts = "xyz";
-      if constexpr (std::is_same_v<Value, Weights>) parts = "012";
-      if constexpr (std::is_same_v<Value, Element>) parts = "01";
-      const std::string key = short_key(field.key);
-      if (parts.empty()) columns.push_back(key);
-      for (const char part : parts) columns.push_back(key + (part < 'a' ? "" : "_") + part);
-    });
+  const std::optional<std::size_t> place = place_of_answer(kinds);
+  if (!place) return columns;
+  for_each_cell(list_infos()[*place].record, details, [&](const FieldInfo& field) {
+    const std::string key = short_key(field.name);
+    std::string_view parts;
+    if (field.role.names == Names::element) parts = "01";
+    if (field.scalar == ScalarType::float64 && field.count > 1)
+      parts = field.role.names == Names::weights ? "012" : "xyz";
+    if (parts.empty()) columns.push_back(key);
+    for (const char part : parts) columns.push_back(key + (part < 'a' ? "" : "_") + part);
   });
   return columns;
 }
@@ -110,9 +110,12 @@ void CsvReport::add(const Frame& frame) {
   if (has_kinds_) {
     add_narrow_phase(frame, rows);
   } else {
-    with_answer(kinds_, [&](const auto&, auto member) {
-      for (const auto& row : member(frame.result)) add_row(rows, frame.number, row, has_details_);
-    });
+    const std::optional<std::size_t> place = place_of_answer(kinds_);
+    const ListRows list = place ? supple::rows_of(frame.result)[*place] : ListRows{};
+    for (std::size_t i = 0; i < list.count; ++i) {
+      const RecordInfo& record = list_infos()[*place].record;
+      add_row(rows, frame.number, record, list.data + i * record.bytes, has_details_);
+    }
   }
   std::fwrite(rows.data(), 1, rows.size(), file_.stream());
   file_.check();

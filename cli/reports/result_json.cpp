@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <vector>
-
-#include "reports/record_json.hpp"
 
 namespace supple::cli {
 namespace {
@@ -159,6 +158,52 @@ void write_curves(JsonWriter& json, const DetectResult& result, bool details) {
 }
 
 }  // namespace
+
+void write_element(JsonWriter& json, const std::array<std::uint32_t, 2>& element, FeatureKind kind) {
+  if (kind == FeatureKind::edge)
+    json.pair(element[0], element[1]);
+  else
+    json.value(element[0]);
+}
+
+void write_ids(JsonWriter& json, const char* name, std::span<const std::uint32_t> ids) {
+  json.key(name);
+  json.begin_array();
+  for (const std::uint32_t id : ids) json.value(id);
+  json.end_array();
+}
+
+void write_members(JsonWriter& json, const RecordInfo& record, const std::byte* row, bool only_exact) {
+  for (const FieldInfo& field : record.fields) {
+    const Role& role = field.role;
+    if ((only_exact && role.is_rounded) || is_of_range(role)) continue;
+    json.key(short_key(field.name));
+    const auto number = [&](std::size_t i) { return number_of(field, row, i); };
+    if (field.kind == FieldInfo::Kind::object) {
+      json.value(number(0));
+    } else if (field.kind == FieldInfo::Kind::feature) {
+      json.value(name_of(Feature{static_cast<FeatureKind>(number(0)), static_cast<std::uint8_t>(number(1))}));
+    } else if (role.names == Names::element) {
+      write_element(json, {static_cast<std::uint32_t>(number(0)), static_cast<std::uint32_t>(number(1))},
+                    record.kind_of_element(row, role.side));
+    } else if (field.scalar == ScalarType::float64 && field.count > 1) {
+      const std::size_t count = role.names == Names::weights  // one for each vertex of the element
+                                    ? 1 + static_cast<std::size_t>(record.kind_of_element(row, role.side))
+                                    : field.count;
+      json.begin_array();
+      for (std::size_t i = 0; i < count; ++i) json.value(real_number(field, row, i));
+      json.end_array();
+    } else if (field.scalar == ScalarType::float64) {
+      json.value(real_number(field, row, 0));
+    } else if (field.scalar == ScalarType::boolean) {
+      json.value(number(0) != 0);
+    } else if (!field.words.empty()) {
+      json.value(field.words[number(0)]);
+    } else {
+      json.value(number(0));
+    }
+  }
+}
 
 void write_intersections(JsonWriter& json, const DetectResult& result, const DetailedContacts& content) {
   write_triangle_pairs(json, "triangle_pairs", result, false);

@@ -1,6 +1,14 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
 #include "base/json_writer.hpp"
+#include "base/text.hpp"
+#include "supple/record_info.hpp"
 #include "supple/result.hpp"
 
 namespace supple::cli {
@@ -27,5 +35,41 @@ void write_manifolds(JsonWriter& json, const DetectResult& result);
 void write_colliding_vertices(JsonWriter& json, const DetectResult& result);
 /// One pair of objects of `supple query distance`, as a list.
 void write_distance(JsonWriter& json, const ProximityPair& pair);
+
+/// The id of a vertex or a face, or `[3, 5]` for an edge.
+void write_element(JsonWriter& json, const std::array<std::uint32_t, 2>& element, FeatureKind kind);
+void write_ids(JsonWriter& json, const char* name, std::span<const std::uint32_t> ids);
+
+/// The key of a member in JSON and CSV: objects are `a` and `b`.
+constexpr const char* short_key(const char* key) {
+  constexpr std::string_view prefix = "object_";
+  return std::string_view(key).starts_with(prefix) ? key + prefix.size() : key;
+}
+
+/// Whether a member refers to a range of another list.
+constexpr bool is_of_range(const Role& role) {
+  return role.names == Names::first_row || (role.names == Names::rows && *role.list != 0);
+}
+
+/// Writes the members of a record by their keys. What a record refers to by ranges of other lists is left
+/// out: the caller writes it as lists of the record. `only_exact` leaves out what is rounded.
+void write_members(JsonWriter& json, const RecordInfo& record, const std::byte* row, bool only_exact);
+template <Described Row>
+void write_fields(JsonWriter& json, const Row& row, bool only_exact = false) {
+  static const RecordInfo record = record_info<Row>();
+  write_members(json, record, reinterpret_cast<const std::byte*>(&row), only_exact);
+}
+
+template <Described Row>
+void write_records(JsonWriter& json, const char* name, std::span<const Row> rows) {
+  json.key(name);
+  json.begin_array();
+  for (const Row& row : rows) {
+    json.begin_object();
+    write_fields(json, row);
+    json.end_object();
+  }
+  json.end_array();
+}
 
 }  // namespace supple::cli

@@ -9,7 +9,7 @@
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
-#include "reports/record_json.hpp"
+#include "reports/result_json.hpp"
 #include "supple/topology.hpp"
 
 namespace supple::cli {

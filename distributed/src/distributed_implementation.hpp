@@ -117,8 +117,7 @@ class DistributedScene::Implementation {
   ObjectId user(ObjectId local) const { return local_.object(local); }
   Vec3d lower_corner(ObjectId object, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
                      bool on_the_way);
-  template <class Record>
-  bool is_mine(const Record& record);
+  bool is_mine(const ListInfo& list, const std::byte* row);
   bool reports_all(ObjectId a, ObjectId b);
   int rank_of_pair(ObjectId a, ObjectId b) const;
   FoundLists& lists_of(ObjectId a);
@@ -130,11 +129,10 @@ class DistributedScene::Implementation {
   void need_clusters_near(std::vector<PointQuery>& points, const SeenClusters& seen);
   void send_nearest(std::span<const PointQuery> points, const ClosestOptions& closest_options);
   static ClosestPoint nearest_of(std::span<const Candidate> candidates, const Vec3d& point);
-  template <class Record, class Add>
-  void send_groups(std::span<const ContactGroup> groups, std::span<const Record> records, PairList events,
-                   const Add& add);
+  void send_groups(const DetectResult& found, const char* name, std::span<const ContactGroup> groups,
+                   PairList events);
+  void send_all(const DetectResult& found, const char* name);
   void send_results();
-  void send_penetrations(const DetectResult& found);
   bool has_pair_to_test(ContactKinds kind);
   void list_untested();
   TestableObject testable(ContactKinds kind, const HomeObject& object);

@@ -100,10 +100,10 @@ HomeObject& DistributedScene::Implementation::home(ObjectId id, const char* call
 /// Sums the counts of all ranks; times are those of the slowest one.
 void DistributedScene::Implementation::gather_step_stats() {
   result_.stats.object_pairs = object_pairs_.size();
-  result_.stats.contacts = lists_.contacts.size() + lists_.continuous_contacts.size();
-  result_.stats.proximity_pairs = lists_.proximity_pairs.size();
-  result_.stats.penetrations = lists_.penetrations.size();
-  result_.stats.curves = lists_.curves.size();
+  result_.stats.contacts = result_.contacts.size() + result_.continuous_contacts.size();
+  result_.stats.proximity_pairs = result_.proximity_pairs.size();
+  result_.stats.penetrations = result_.penetrations.size();
+  result_.stats.curves = result_.curves.size();
   std::vector<double> times;
   std::vector<std::uint64_t> counts;
   const auto visit_all = [&](const auto& of_time, const auto& of_count) {

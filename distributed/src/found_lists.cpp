@@ -1,6 +1,8 @@
 #include "found_lists.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <numeric>
 #include <tuple>
 
 #include "core/sort_once.hpp"
@@ -8,60 +10,60 @@
 namespace supple {
 namespace {
 
-auto key(const Contact& c) {
-  return std::tuple(c.object_a, c.object_b, c.triangle_a, c.triangle_b);
-}
-auto key(const ContinuousContact& c) {
-  return std::tuple(c.object_a, c.object_b, c.kind, c.element_a, c.element_b);
-}
-auto key(const ProximityPair& p) {
-  return std::tuple(p.object_a, p.object_b, p.kind_a, p.kind_b, p.element_a, p.element_b);
-}
-auto key(const PenetrationGroup& g) {
-  return std::tuple(g.a, g.b);
-}
-auto key(const ContainedPart& p) {
-  return std::tuple(p.inner, p.outer, p.vertex);
-}
-/// The curves of two objects are on one rank, and so their contacts are in their order.
-auto key(const IntersectionCurve& c) {
-  return std::tuple(c.a, c.b, c.first_contact);
-}
-auto key(const NonFiniteVertex& v) {
-  return std::tuple(v.object, v.vertex);
-}
-
-/// Returns whether anything changed its place. Lists of one rank are in order.
-template <class Record>
-bool sort_records(std::vector<Record>& records) {
-  const auto before = [](const Record& p, const Record& q) { return key(p) < key(q); };
-  if (std::is_sorted(records.begin(), records.end(), before)) return false;
-  std::sort(records.begin(), records.end(), before);
-  return true;
-}
-
-/// Puts ranges of a list into the order of the records that own them.
-template <class Item>
-class Reordered {
- public:
-  explicit Reordered(std::vector<Item>& items) : items_(items) { ordered_.reserve(items.size()); }
-  ~Reordered() { items_.swap(ordered_); }
-  Reordered(const Reordered&) = delete;
-  Reordered& operator=(const Reordered&) = delete;
-
-  void take(std::uint32_t& first, std::size_t count) {
-    const auto from = items_.begin() + static_cast<std::ptrdiff_t>(first);
-    first = static_cast<std::uint32_t>(ordered_.size());
-    ordered_.insert(ordered_.end(), from, from + static_cast<std::ptrdiff_t>(count));
-  }
-
- private:
-  std::vector<Item>& items_;
-  std::vector<Item> ordered_;
+/// The rows of another list to which the rows of a list refer.
+struct Reference {
+  struct Part {
+    const FieldInfo* size;
+    char side;  // of vertices
+  };
+  std::size_t list = 0;
+  const FieldInfo* first = nullptr;
+  std::vector<Part> parts;  // one after the other
 };
 
+/// By list.
+const std::vector<std::vector<Reference>>& references_of_lists() {
+  static const std::vector<std::vector<Reference>> all = [] {
+    std::vector<std::vector<Reference>> ranges;
+    for (const ListInfo& list : list_infos()) {
+      std::vector<Reference>& of_list = ranges.emplace_back();
+      for (const FieldInfo& first : list.record.fields) {
+        if (first.role.names != Names::first_row || *list.record.name == 0) continue;
+        Reference& range = of_list.emplace_back();
+        range.list = place_of_list(first.role.list);
+        range.first = &first;
+        for (const FieldInfo& size : list.record.fields) {
+          if (size.role.names == Names::rows && std::string_view(size.role.list) == first.role.list)
+            range.parts.push_back({&size, size.role.side});
+        }
+      }
+    }
+    return ranges;
+  }();
+  return all;
+}
+
+/// Whether rows of another list refer to those of this one, so that these have their order.
+bool is_referred_to(std::size_t list) {
+  return std::ranges::any_of(references_of_lists(), [&](const auto& ranges) {
+    return std::ranges::any_of(ranges, [&](const Reference& range) { return range.list == list; });
+  });
+}
+
+void set_number(const FieldInfo& field, std::byte* row, std::uint32_t number) {
+  std::memcpy(row + field.offset, &number, sizeof number);
+}
+std::uint32_t first_of(const Reference& range, const std::byte* row) {
+  return static_cast<std::uint32_t>(number_of(*range.first, row));
+}
+std::size_t length_of(const Reference& range, const std::byte* row) {
+  std::size_t length = 0;
+  for (const auto& [field, side] : range.parts) length += number_of(*field, row);
+  return length;
+}
+
 template <class Record>
-void list_groups(const std::vector<Record>& records, std::vector<ContactGroup>& groups) {
+void list_groups(std::span<const Record> records, std::vector<ContactGroup>& groups) {
   groups.clear();
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (groups.empty() || groups.back().a != records[i].object_a || groups.back().b != records[i].object_b)
@@ -72,122 +74,168 @@ void list_groups(const std::vector<Record>& records, std::vector<ContactGroup>& 
 
 }  // namespace
 
-bool is_before(const ContinuousContact& p, const ContinuousContact& q) {
-  return key(p) < key(q);
+bool is_before(const RecordInfo& record, const std::byte* p, const std::byte* q) {
+  std::vector<std::uint64_t> key_p, key_q;
+  add_key(record, p, key_p);
+  add_key(record, q, key_q);
+  return key_p < key_q;
 }
 
-template <class Lists, class Visit>
-void FoundLists::visit(Lists& lists, const Visit& visit) {
-  for (auto& list : lists.pairs) visit(list);
-  visit(lists.contacts);
-  visit(lists.contact_points);
-  visit(lists.continuous_contacts);
-  visit(lists.proximity_pairs);
-  visit(lists.penetration_groups);
-  visit(lists.penetrations);
-  visit(lists.vertices_on_surface);
-  visit(lists.contained_parts);
-  visit(lists.curves);
-  visit(lists.curve_contacts);
-  visit(lists.curve_points);
-  visit(lists.enclosed_vertices);
-  visit(lists.non_finite_vertices);
+/// Changes what counts the contacts of all objects, to count those of the objects of a row, or back.
+void FoundLists::count_contacts(std::size_t list, std::size_t i, std::span<const ContactGroup> groups,
+                                bool from_all) {
+  for (const Reference& range : references_of_lists()[list]) {
+    const FieldInfo& value = list_infos()[range.list].record.fields[0];
+    if (value.role.names != Names::first_row) continue;
+    const std::byte* const of_row = row(list, i);
+    const auto [a, b] = objects_of(list_infos()[list].record, of_row);
+    const auto group = std::lower_bound(
+        groups.begin(), groups.end(), std::tuple(a, b),
+        [](const ContactGroup& p, const auto& objects) { return std::tuple(p.a, p.b) < objects; });
+    for (std::size_t k = first_of(range, of_row), end = k + length_of(range, of_row); k < end; ++k) {
+      std::byte* const contact = row(range.list, k);
+      const auto number = static_cast<std::uint32_t>(number_of(value, contact));
+      set_number(value, contact, from_all ? number - group->first_contact : number + group->first_contact);
+    }
+  }
+}
+
+void FoundLists::add(std::size_t list, std::size_t of_row, std::span<const ListRows> from,
+                     std::span<const ContactGroup> groups, const Numbers& numbers) {
+  const auto append = [&](std::size_t to, std::size_t first, std::size_t rows) {
+    const std::size_t bytes = list_infos()[to].record.bytes;
+    const std::byte* const begin = from[to].data + first * bytes;
+    rows_[to].insert(rows_[to].end(), begin, begin + rows * bytes);
+  };
+  const std::uint32_t added = count(list);
+  append(list, of_row, 1);
+  for (const Reference& range : references_of_lists()[list]) {
+    std::byte* const to = row(list, added);
+    const std::uint32_t first = first_of(range, to);
+    set_number(*range.first, to, count(range.list));
+    if (from[range.list].count != 0) append(range.list, first, length_of(range, to));
+  }
+  count_contacts(list, added, groups, true);
+  renumber(list, added, numbers);
+}
+
+/// Renumbers a row and all to which it refers.
+void FoundLists::renumber(std::size_t list, std::size_t i, const Numbers& numbers) {
+  const RecordInfo& record = list_infos()[list].record;
+  std::byte* const of_row = row(list, i);
+  const std::array<ObjectId, 2> objects = objects_of(record, of_row);
+  for (const Reference& range : references_of_lists()[list]) {
+    if (rows_[range.list].empty()) continue;  // contacts without points
+    const RecordInfo& referred = list_infos()[range.list].record;
+    std::size_t next = first_of(range, of_row);
+    for (const auto& [length, side] : range.parts) {
+      for (std::uint64_t k = number_of(*length, of_row); k > 0; --k)
+        supple::renumber(referred, row(range.list, next++), objects, numbers, side);
+    }
+  }
+  supple::renumber(record, of_row, objects, numbers);
+}
+
+void FoundLists::renumber(const Numbers& numbers) {
+  for (std::size_t list = 0; list < rows_.size(); ++list) {
+    if (is_referred_to(list)) continue;
+    for (std::uint32_t i = 0; i < count(list); ++i) renumber(list, i, numbers);
+  }
 }
 
 void FoundLists::clear() {
-  visit(*this, [](auto& list) { list.clear(); });
+  for (auto& list : pairs) list.clear();
+  non_finite_vertices.clear();
+  for (auto& list : rows_) list.clear();
 }
 
 bool FoundLists::is_empty() const {
-  bool is_empty = true;
-  visit(*this, [&](const auto& list) { is_empty = is_empty && list.empty(); });
-  return is_empty;
+  const auto is_nothing = [](const auto& list) { return list.empty(); };
+  return std::ranges::all_of(pairs, is_nothing) && non_finite_vertices.empty() &&
+         std::ranges::all_of(rows_, is_nothing);
 }
 
 void FoundLists::write(Writer& to) const {
-  visit(*this, [&](const auto& list) { to.put_all(list); });
+  for (const auto& list : pairs) to.put_all(list);
+  to.put_all(non_finite_vertices);
+  for (const auto& list : rows_) to.put_all(list);
 }
 
 void FoundLists::append(Reader& from) {
-  const std::size_t old_contacts = contacts.size(), old_groups = penetration_groups.size(),
-                    old_curves = curves.size();
-  const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
-  const std::uint32_t points = size(contact_points), depths = size(penetrations),
-                      on_surface = size(vertices_on_surface), linked = size(curve_contacts),
-                      curve_point = size(curve_points), enclosed = size(enclosed_vertices);
-  visit(*this, [&](auto& list) { from.append_all(list); });
-  for (std::size_t i = old_contacts; i < contacts.size(); ++i) contacts[i].first_point += points;
-  for (std::size_t i = old_groups; i < penetration_groups.size(); ++i) {
-    penetration_groups[i].first_penetration += depths;
-    penetration_groups[i].first_on_surface += on_surface;
-  }
-  for (std::size_t i = old_curves; i < curves.size(); ++i) {
-    curves[i].first_contact += linked;
-    curves[i].first_point += curve_point;
-    curves[i].first_enclosed += enclosed;
+  std::vector<std::uint32_t> old;
+  for (std::size_t list = 0; list < rows_.size(); ++list) old.push_back(count(list));
+  for (auto& list : pairs) from.append_all(list);
+  from.append_all(non_finite_vertices);
+  for (auto& list : rows_) from.append_all(list);
+  for (std::size_t list = 0; list < rows_.size(); ++list) {
+    for (const Reference& range : references_of_lists()[list]) {
+      for (std::uint32_t i = old[list]; i < count(list); ++i)
+        set_number(*range.first, row(list, i), first_of(range, row(list, i)) + old[range.list]);
+    }
   }
 }
 
 void FoundLists::sort() {
   for (std::vector<ObjectPair>& list : pairs) sort_once(list);
-  sort_records(continuous_contacts);
-  sort_records(proximity_pairs);
-  sort_records(contained_parts);
-  sort_records(non_finite_vertices);
   // Parts of an object share the vertices on their borders.
-  const auto end = std::unique(non_finite_vertices.begin(), non_finite_vertices.end(),
-                               [](const auto& p, const auto& q) { return key(p) == key(q); });
-  non_finite_vertices.erase(end, non_finite_vertices.end());
-  if (sort_records(contacts) && !contact_points.empty()) {
-    Reordered points(contact_points);
-    for (Contact& contact : contacts) points.take(contact.first_point, contact.point_count);
+  const auto key = [](const NonFiniteVertex& v) { return std::tuple(v.object, v.vertex); };
+  std::ranges::sort(non_finite_vertices, {}, key);
+  const auto same = std::ranges::unique(non_finite_vertices, {}, key);
+  non_finite_vertices.erase(same.begin(), same.end());
+  for (std::size_t list = 0; list < rows_.size(); ++list) {
+    if (!is_referred_to(list)) sort(list);
   }
-  if (sort_records(penetration_groups)) {
-    Reordered depths(penetrations);
-    Reordered on_surface(vertices_on_surface);
-    for (PenetrationGroup& group : penetration_groups) {
-      depths.take(group.first_penetration, group.penetration_count);
-      on_surface.take(group.first_on_surface, group.on_surface_count);
+}
+
+/// Rows with equal keys keep their order: they are from one rank. Rows of one rank are in order.
+void FoundLists::sort(std::size_t list) {
+  const RecordInfo& record = list_infos()[list].record;
+  std::vector<std::uint64_t> keys;
+  for (std::uint32_t i = 0; i < count(list); ++i) add_key(record, row(list, i), keys);
+  if (keys.empty()) return;
+  const std::size_t width = keys.size() / count(list);
+  const auto key_of = [&](std::uint32_t i) { return std::span(keys).subspan(i * width, width); };
+  const auto is_before_row = [&](std::uint32_t i, std::uint32_t k) {
+    const auto p = key_of(i), q = key_of(k);
+    const auto [at_p, at_q] = std::ranges::mismatch(p, q);
+    return at_p == p.end() ? i < k : *at_p < *at_q;
+  };
+  std::vector<std::uint32_t> order(count(list));
+  std::iota(order.begin(), order.end(), 0u);
+  if (std::ranges::is_sorted(order, is_before_row)) return;
+  std::ranges::sort(order, is_before_row);
+  std::vector<std::byte> sorted;
+  sorted.reserve(rows_[list].size());
+  for (const std::uint32_t i : order) sorted.insert(sorted.end(), row(list, i), row(list, i) + record.bytes);
+  rows_[list].swap(sorted);
+  for (const Reference& range : references_of_lists()[list]) {
+    if (rows_[range.list].empty()) continue;
+    const std::size_t bytes = list_infos()[range.list].record.bytes;
+    std::vector<std::byte> ordered;
+    ordered.reserve(rows_[range.list].size());
+    for (std::uint32_t i = 0; i < count(list); ++i) {
+      const std::byte* const from = row(range.list, first_of(range, row(list, i)));
+      set_number(*range.first, row(list, i), static_cast<std::uint32_t>(ordered.size() / bytes));
+      ordered.insert(ordered.end(), from, from + length_of(range, row(list, i)) * bytes);
     }
-  }
-  if (!sort_records(curves)) return;
-  Reordered linked(curve_contacts);
-  Reordered points(curve_points);
-  Reordered enclosed(enclosed_vertices);
-  for (IntersectionCurve& curve : curves) {
-    linked.take(curve.first_contact, curve.contact_count);
-    points.take(curve.first_point, curve.point_count);
-    enclosed.take(curve.first_enclosed, std::size_t{curve.enclosed_count_a} + curve.enclosed_count_b);
+    rows_[range.list].swap(ordered);
   }
 }
 
 void FoundLists::list(DetectResult& result) {
-  list_groups(contacts, groups_);
-  list_groups(continuous_contacts, continuous_groups_);
-  list_groups(proximity_pairs, proximity_groups_);
-  for (const IntersectionCurve& curve : curves) {
-    const auto group = std::lower_bound(
-        groups_.begin(), groups_.end(), std::tuple(curve.a, curve.b),
-        [](const ContactGroup& p, const auto& objects) { return std::tuple(p.a, p.b) < objects; });
-    for (std::uint32_t i = 0; i < curve.contact_count; ++i)
-      curve_contacts[curve.first_contact + i] += group->first_contact;
+  std::vector<ListRows> rows;
+  for (std::size_t list = 0; list < rows_.size(); ++list) rows.push_back({rows_[list].data(), count(list)});
+  set_rows(result, rows);
+  list_groups(result.contacts, groups_);
+  list_groups(result.continuous_contacts, continuous_groups_);
+  list_groups(result.proximity_pairs, proximity_groups_);
+  for (std::size_t list = 0; list < rows_.size(); ++list) {
+    for (std::uint32_t i = 0; i < count(list); ++i) count_contacts(list, i, groups_, false);
   }
   result.object_pairs = pairs[static_cast<std::size_t>(PairList::volumes)];
   result.groups = groups_;
-  result.contacts = contacts;
-  result.contact_points = contact_points;
   result.continuous_groups = continuous_groups_;
-  result.continuous_contacts = continuous_contacts;
   result.proximity_groups = proximity_groups_;
-  result.proximity_pairs = proximity_pairs;
-  result.penetration_groups = penetration_groups;
-  result.penetrations = penetrations;
-  result.vertices_on_surface = vertices_on_surface;
-  result.contained_parts = contained_parts;
-  result.curves = curves;
-  result.curve_contacts = curve_contacts;
-  result.curve_points = curve_points;
-  result.enclosed_vertices = enclosed_vertices;
   result.non_finite_vertices = non_finite_vertices;
 }
 

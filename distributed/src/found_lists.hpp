@@ -3,9 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bytes.hpp"
+#include "renumbered.hpp"
+#include "supple/record_info.hpp"
 #include "supple/result.hpp"
 
 namespace supple {
@@ -15,23 +18,20 @@ namespace supple {
 enum class PairList : std::uint8_t { volumes, contacts, margins, inside };
 inline constexpr std::size_t pair_lists = 4;
 
-/// The lists of a result, with memory of their own and the user's numbers.
-struct FoundLists {
+/// The lists of a result, with memory of their own and the user's numbers. `list_infos` says what a row is
+/// and to which rows of other lists it refers; a list of rows to which others refer has the order of these.
+class FoundLists {
+ public:
+  FoundLists() : rows_(list_infos().size()) {}
+
   std::array<std::vector<ObjectPair>, pair_lists> pairs;  ///< by `PairList`
-  std::vector<Contact> contacts;
-  std::vector<ContactPoint> contact_points;
-  std::vector<ContinuousContact> continuous_contacts;
-  std::vector<ProximityPair> proximity_pairs;
-  std::vector<PenetrationGroup> penetration_groups;
-  std::vector<Penetration> penetrations;
-  std::vector<std::uint32_t> vertices_on_surface;
-  std::vector<ContainedPart> contained_parts;
-  std::vector<IntersectionCurve> curves;
-  std::vector<std::uint32_t> curve_contacts;  ///< from the first contact of the curve's objects on
-  std::vector<Vec3d> curve_points;
-  std::vector<std::uint32_t> enclosed_vertices;
   std::vector<NonFiniteVertex> non_finite_vertices;
 
+  /// Adds a row of a list, and all to which it refers, with other numbers. `from` are the rows of a result,
+  /// whose groups of contacts are `groups`. What counts contacts, then counts from the first of the objects.
+  void add(std::size_t list, std::size_t row, std::span<const ListRows> from,
+           std::span<const ContactGroup> groups, const Numbers& numbers);
+  void renumber(const Numbers& numbers);
   void clear();
   bool is_empty() const;
   void write(Writer& to) const;
@@ -39,18 +39,25 @@ struct FoundLists {
   void append(Reader& from);
   /// Sorts all lists in canonical order.
   void sort();
-  /// Lists the groups of the contacts, and adds spans of all lists. `curve_contacts` then counts from the
-  /// first contact of all.
+  /// Lists the groups of the contacts, and adds spans of all lists. What counts contacts then counts all.
   void list(DetectResult& result);
 
  private:
-  template <class Lists, class Visit>
-  static void visit(Lists& lists, const Visit& visit);
+  std::byte* row(std::size_t list, std::size_t i) {
+    return rows_[list].data() + i * list_infos()[list].record.bytes;
+  }
+  std::uint32_t count(std::size_t list) const {
+    return static_cast<std::uint32_t>(rows_[list].size() / list_infos()[list].record.bytes);
+  }
+  void renumber(std::size_t list, std::size_t i, const Numbers& numbers);
+  void sort(std::size_t list);
+  void count_contacts(std::size_t list, std::size_t i, std::span<const ContactGroup> groups, bool from_all);
 
+  std::vector<std::vector<std::byte>> rows_;  // by list
   std::vector<ContactGroup> groups_, continuous_groups_, proximity_groups_;
 };
 
-/// The canonical order.
-bool is_before(const ContinuousContact& p, const ContinuousContact& q);
+/// Whether a row comes before another one in canonical order: by the members of its key.
+bool is_before(const RecordInfo& record, const std::byte* p, const std::byte* q);
 
 }  // namespace supple

@@ -23,7 +23,6 @@
 #include "geometry/vector.hpp"
 #include "queries/check_queries.hpp"
 #include "queries/queries.hpp"
-#include "renumbered.hpp"
 
 namespace supple {
 
@@ -307,14 +306,15 @@ std::vector<ProximityPair> DistributedScene::Implementation::distances(double ma
     const std::vector<ProximityPair> nearest = Queries(world()).distances(max_distance, limits);
     // The other ranks would take an empty list for an answer.
     if (stop_of(limits).stop_requested()) fail("distances: it was stopped, so there is no answer");
-    for (const ProximityPair& pair : nearest) {
-      const ProximityPair found = renumbered(pair, local_);
-      lists_of(found.object_a).proximity_pairs.push_back(found);
-    }
+    DetectResult found;
+    found.proximity_pairs = nearest;
+    send_all(found, "proximity_pairs");
   });
   send_lists();
   end_step();
-  return lists_.proximity_pairs;
+  DetectResult all;
+  lists_.list(all);
+  return {all.proximity_pairs.begin(), all.proximity_pairs.end()};
 }
 
 }  // namespace supple

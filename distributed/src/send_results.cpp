@@ -6,14 +6,17 @@
 // elements have in common: this point is in the boxes of all clusters that have these elements.
 
 #include <algorithm>
+#include <cstring>
+#include <limits>
 #include <utility>
 
 #include "answers/object_pairs.hpp"
 #include "distributed_implementation.hpp"
-#include "renumbered.hpp"
 
 namespace supple {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Box {
   Vec3d min, max;
@@ -54,22 +57,22 @@ Vec3d DistributedScene::Implementation::lower_corner(ObjectId object, FeatureKin
   return box.min - Vec3d{growth, growth, growth};
 }
 
-/// Whether this rank reports a pair of elements. `is_sure` says that it reports all pairs of the objects.
-template <class Record>
-bool DistributedScene::Implementation::is_mine(const Record& record) {
-  Vec3d p, q;
-  if constexpr (std::is_same_v<Record, Contact>) {
-    p = lower_corner(record.object_a, FeatureKind::face, {record.triangle_a, 0}, false);
-    q = lower_corner(record.object_b, FeatureKind::face, {record.triangle_b, 0}, false);
-  } else if constexpr (std::is_same_v<Record, ContinuousContact>) {
-    const auto [kind_a, kind_b] = feature_kinds(record.kind);
-    p = lower_corner(record.object_a, kind_a, record.element_a, true);
-    q = lower_corner(record.object_b, kind_b, record.element_b, true);
-  } else {
-    p = lower_corner(record.object_a, record.kind_a, record.element_a, false);
-    q = lower_corner(record.object_b, record.kind_b, record.element_b, false);
+/// Whether this rank reports a row with an element or a triangle of two objects.
+bool DistributedScene::Implementation::is_mine(const ListInfo& list, const std::byte* row) {
+  const std::array<ObjectId, 2> objects = objects_of(list.record, row);
+  Vec3d corner{-infinity, -infinity, -infinity};
+  for (const FieldInfo& field : list.record.fields) {
+    const auto [names, side] = std::pair(field.role.names, field.role.side);
+    if (names != Names::triangle && names != Names::element) continue;
+    std::array<std::uint32_t, 2> element{};
+    std::memcpy(element.data(), row + field.offset, field.bytes());
+    const FeatureKind kind =
+        names == Names::triangle ? FeatureKind::face : list.record.kind_of_element(row, side);
+    const Vec3d lowest =
+        lower_corner(objects[side == 'b' ? 1 : 0], kind, element, list.answers == ContactKinds::continuous);
+    for (int axis = 0; axis < 3; ++axis) corner[axis] = std::max(corner[axis], lowest[axis]);
   }
-  return region_.contains(Vec3d{std::max(p.x, q.x), std::max(p.y, q.y), std::max(p.z, q.z)});
+  return region_.contains(corner);
 }
 
 /// Whether all that is found of two objects of the world is reported here: they are tested nowhere else.
@@ -104,62 +107,32 @@ void DistributedScene::Implementation::send_pair(PairList list, ObjectId p, Obje
   if (a != b) outgoing_[rank_of_pair(a, b)].pairs[static_cast<std::size_t>(list)].push_back({a, b});
 }
 
-/// Adds the records of each group that this rank reports; `add(record, lists)` adds one.
-template <class Record, class Add>
-void DistributedScene::Implementation::send_groups(std::span<const ContactGroup> groups,
-                                                   std::span<const Record> records, PairList events,
-                                                   const Add& add) {
+/// Adds the rows of each group that this rank reports.
+void DistributedScene::Implementation::send_groups(const DetectResult& found, const char* name,
+                                                   std::span<const ContactGroup> groups, PairList events) {
+  const std::vector<ListRows> rows = rows_of(found);
+  const std::size_t place = place_of_list(name);
+  const ListInfo& list = list_infos()[place];
   for (const ContactGroup& group : groups) {
     const bool is_sure = reports_all(group.a, group.b);
     FoundLists* lists = nullptr;
-    for (const Record& record : records.subspan(group.first_contact, group.contact_count)) {
-      if (!is_sure && !is_mine(record)) continue;
+    for (std::size_t i = group.first_contact; i < group.first_contact + group.contact_count; ++i) {
+      if (!is_sure && !is_mine(list, rows[place].data + i * list.record.bytes)) continue;
       if (lists == nullptr) lists = &lists_of(user(group.a));
-      add(renumbered(record, local_), *lists);
+      lists->add(place, i, rows, found.groups, local_);
     }
     if (lists != nullptr) send_pair(events, user(group.a), user(group.b));
   }
 }
 
-void DistributedScene::Implementation::send_penetrations(const DetectResult& found) {
-  const auto append = [&](std::span<const std::uint32_t> vertices, ObjectId object,
-                          std::vector<std::uint32_t>& to) {
-    for (const std::uint32_t v : vertices) to.push_back(local_.vertex(object, v));
-  };
-  const auto next = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
-  for (const PenetrationGroup& group : found.penetration_groups) {
-    const ObjectId a = user(group.a), b = user(group.b);
-    FoundLists& lists = lists_of(a);
-    lists.penetration_groups.push_back({a, b, next(lists.penetrations), group.penetration_count,
-                                        next(lists.vertices_on_surface), group.on_surface_count});
-    for (const Penetration& depth : found.penetrations_of(group))
-      lists.penetrations.push_back(renumbered(depth, local_));
-    append(found.vertices_on_surface_of(group), group.a, lists.vertices_on_surface);
-    if (group.penetration_count > 0) send_pair(PairList::inside, a, b);
-  }
-  for (const ContainedPart& contained : found.contained_parts) {
-    const ContainedPart part = renumbered(contained, local_);
-    lists_of(part.inner).contained_parts.push_back(part);
-    send_pair(PairList::inside, part.inner, part.outer);
-  }
-  for (const IntersectionCurve& curve : found.curves) {
-    const auto group = std::lower_bound(
-        found.groups.begin(), found.groups.end(), std::pair(curve.a, curve.b),
-        [](const ContactGroup& p, const auto& objects) { return std::pair(p.a, p.b) < objects; });
-    FoundLists& lists = lists_of(user(curve.a));
-    IntersectionCurve sent = curve;
-    sent.a = user(curve.a);
-    sent.b = user(curve.b);
-    sent.first_contact = next(lists.curve_contacts);
-    sent.first_point = next(lists.curve_points);
-    sent.first_enclosed = next(lists.enclosed_vertices);
-    lists.curves.push_back(sent);
-    for (const std::uint32_t contact : found.contacts_of(curve))
-      lists.curve_contacts.push_back(contact - group->first_contact);
-    const std::span<const Vec3d> points = found.points_of(curve);
-    lists.curve_points.insert(lists.curve_points.end(), points.begin(), points.end());
-    append(found.enclosed_vertices_of(curve, ContactSide::a), curve.a, lists.enclosed_vertices);
-    append(found.enclosed_vertices_of(curve, ContactSide::b), curve.b, lists.enclosed_vertices);
+/// Adds all rows of a list: the objects are tested on no other rank.
+void DistributedScene::Implementation::send_all(const DetectResult& found, const char* name) {
+  const std::vector<ListRows> rows = rows_of(found);
+  const std::size_t place = place_of_list(name);
+  const RecordInfo& record = list_infos()[place].record;
+  for (std::size_t i = 0; i < rows[place].count; ++i) {
+    const auto [a, b] = objects_of(record, rows[place].data + i * record.bytes);
+    lists_of(user(a)).add(place, i, rows, found.groups, local_);
   }
 }
 
@@ -174,17 +147,15 @@ void DistributedScene::Implementation::send_results() {
   DetectResult found;
   detection_.list(found);
   clear_lists();
-  send_groups(found.groups, found.contacts, PairList::contacts, [&](Contact contact, FoundLists& lists) {
-    const std::span<const ContactPoint> points = found.points_of(contact);
-    contact.first_point = static_cast<std::uint32_t>(lists.contact_points.size());
-    lists.contacts.push_back(contact);
-    lists.contact_points.insert(lists.contact_points.end(), points.begin(), points.end());
-  });
-  send_groups(found.continuous_groups, found.continuous_contacts, PairList::contacts,
-              [](const ContinuousContact& c, FoundLists& lists) { lists.continuous_contacts.push_back(c); });
-  send_groups(found.proximity_groups, found.proximity_pairs, PairList::margins,
-              [](const ProximityPair& p, FoundLists& lists) { lists.proximity_pairs.push_back(p); });
-  send_penetrations(found);
+  send_groups(found, "contacts", found.groups, PairList::contacts);
+  send_groups(found, "continuous_contacts", found.continuous_groups, PairList::contacts);
+  send_groups(found, "proximity_pairs", found.proximity_groups, PairList::margins);
+  for (const char* const list : {"penetration_groups", "contained_parts", "curves"}) send_all(found, list);
+  for (const PenetrationGroup& group : found.penetration_groups) {
+    if (group.penetration_count > 0) send_pair(PairList::inside, user(group.a), user(group.b));
+  }
+  for (const ContainedPart& part : found.contained_parts)
+    send_pair(PairList::inside, user(part.inner), user(part.outer));
   for (const auto& [a, b] : object_pairs_) send_pair(PairList::volumes, a, b);
   for (const auto& [id, object] : homes_) {
     FoundLists& lists = outgoing_[options.results == ResultPlacement::gathered ? 0 : object.first_home];

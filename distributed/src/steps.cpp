@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "distributed_implementation.hpp"
-#include "renumbered.hpp"
 
 namespace supple {
 namespace {
@@ -32,6 +31,7 @@ SafeStep as_step(const std::optional<ContinuousContact>& contact, bool stopped) 
 std::optional<ContinuousContact> DistributedScene::Implementation::first_of_all(
     const std::optional<ContinuousContact>& own) {
   constexpr double never = 2;
+  static const RecordInfo record = record_info<ContinuousContact>();
   std::vector<double> latest{own ? -own->toi : -never};
   ranks.largest(latest);
   const double earliest = -latest[0];
@@ -41,9 +41,12 @@ std::optional<ContinuousContact> DistributedScene::Implementation::first_of_all(
   ranks.exchange(outbox_, inbox_);
   ContinuousContact first{};
   bool is_first = true;
+  const auto bytes = [](const ContinuousContact& contact) {
+    return reinterpret_cast<const std::byte*>(&contact);
+  };
   inbox_.for_each([&](Reader& from, int) {
     const auto other = from.get<ContinuousContact>();
-    if (is_first || is_before(other, first)) first = other;
+    if (is_first || is_before(record, bytes(other), bytes(first))) first = other;
     is_first = false;
   });
   MPI_Bcast(&first, sizeof first, MPI_BYTE, 0, ranks.handle());

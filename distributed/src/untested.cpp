@@ -61,9 +61,9 @@ TestableObject DistributedScene::Implementation::testable(ContactKinds kind, con
 /// Collective: the requested kinds that found nothing and had nothing to test; the same on all ranks.
 void DistributedScene::Implementation::list_untested() {
   untested_.clear();
-  std::vector<double> counts{double(lists_.contacts.size()), double(lists_.continuous_contacts.size()),
-                             double(lists_.proximity_pairs.size()),
-                             double(lists_.penetration_groups.size() + lists_.contained_parts.size())};
+  std::vector<double> counts{double(result_.contacts.size()), double(result_.continuous_contacts.size()),
+                             double(result_.proximity_pairs.size()),
+                             double(result_.penetration_groups.size() + result_.contained_parts.size())};
   ranks.largest(counts);
   const ContactKinds kinds[] = {ContactKinds::intersection, ContactKinds::continuous, ContactKinds::proximity,
                                 ContactKinds::penetration};

@@ -10,13 +10,13 @@
 
 #include "core/error.hpp"
 #include "distributed_implementation.hpp"
-#include "renumbered.hpp"
+#include "supple/difference_descriptions.hpp"
 
 namespace supple {
 namespace {
 
 /// The user's numbers of an object.
-struct Numbers {
+struct NumbersOfObject {
   ObjectId object;
   std::vector<std::uint32_t> faces, vertices;  ///< ascending
 };
@@ -28,20 +28,21 @@ class WholeScene {
 
   void add(ObjectId id, const SavedObject& saved);
   void set_filter(const PairFilter& filter);
-  /// Gives what was found the numbers of this world.
-  void renumber(FoundLists& found) const;
   const World& world() const { return world_; }
 
   /// The numbers here of the user's.
-  struct Own {
+  struct Own final : Numbers {
+    explicit Own(const WholeScene& of) : scene(of) {}
     const WholeScene& scene;
 
-    ObjectId object(ObjectId id) const { return scene.world_.id_of(scene.slots_.at(id)); }
-    std::uint32_t face(ObjectId id, std::uint32_t t) const { return place(numbers(id).faces, t); }
-    std::uint32_t vertex(ObjectId id, std::uint32_t v) const { return place(numbers(id).vertices, v); }
+    ObjectId object(ObjectId id) const override { return scene.world_.id_of(scene.slots_.at(id)); }
+    std::uint32_t face(ObjectId id, std::uint32_t t) const override { return place(numbers(id).faces, t); }
+    std::uint32_t vertex(ObjectId id, std::uint32_t v) const override {
+      return place(numbers(id).vertices, v);
+    }
 
    private:
-    const Numbers& numbers(ObjectId id) const { return scene.numbers_[scene.slots_.at(id)]; }
+    const NumbersOfObject& numbers(ObjectId id) const { return scene.numbers_[scene.slots_.at(id)]; }
     static std::uint32_t place(const std::vector<std::uint32_t>& numbers, std::uint32_t number) {
       const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
       if (found == numbers.end() || *found != number) fail("verify: a contact has elements of no object");
@@ -50,19 +51,22 @@ class WholeScene {
   };
 
   /// The user's numbers of those here.
-  struct Users {
+  struct Users final : Numbers {
+    explicit Users(const WholeScene& of) : scene(of) {}
     const WholeScene& scene;
 
-    ObjectId object(ObjectId own) const { return scene.numbers_[own.index].object; }
-    std::uint32_t face(ObjectId own, std::uint32_t t) const { return scene.numbers_[own.index].faces[t]; }
-    std::uint32_t vertex(ObjectId own, std::uint32_t v) const {
+    ObjectId object(ObjectId own) const override { return scene.numbers_[own.index].object; }
+    std::uint32_t face(ObjectId own, std::uint32_t t) const override {
+      return scene.numbers_[own.index].faces[t];
+    }
+    std::uint32_t vertex(ObjectId own, std::uint32_t v) const override {
       return scene.numbers_[own.index].vertices[v];
     }
   };
 
  private:
   World world_;
-  std::vector<Numbers> numbers_;  // by slot
+  std::vector<NumbersOfObject> numbers_;  // by slot
   std::map<ObjectId, std::uint32_t> slots_;
 };
 
@@ -84,26 +88,6 @@ void WholeScene::set_filter(const PairFilter& filter) {
   world_.set_filter([this, &filter](ObjectId a, ObjectId b) {
     return filter(numbers_[a.index].object, numbers_[b.index].object);
   });
-}
-
-void WholeScene::renumber(FoundLists& found) const {
-  const Own own{*this};
-  const auto renumber_all = [&](auto& records) {
-    for (auto& record : records) record = renumbered(record, own);
-  };
-  renumber_all(found.contacts);
-  renumber_all(found.continuous_contacts);
-  renumber_all(found.proximity_pairs);
-  renumber_all(found.penetrations);
-  renumber_all(found.contained_parts);
-  for (PenetrationGroup& group : found.penetration_groups) {
-    for (std::uint32_t i = 0; i < group.on_surface_count; ++i) {
-      std::uint32_t& vertex = found.vertices_on_surface[group.first_on_surface + i];
-      vertex = own.vertex(group.a, vertex);
-    }
-    group.a = own.object(group.a);
-    group.b = own.object(group.b);
-  }
 }
 
 /// Calls `visit(member)` for each list of differences.
@@ -174,7 +158,7 @@ VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) 
     WholeScene scene(options.scene);
     for (const auto& [id, of_object] : parts) scene.add(id, read_object(of_object));
     scene.set_filter(filter_);
-    scene.renumber(found);
+    found.renumber(WholeScene::Own(scene));
     found.sort();
     DetectResult result;
     found.list(result);
@@ -186,7 +170,7 @@ VerifyReport DistributedScene::Implementation::verify(const CallLimits& limits) 
     to.put(report.stopped);
     for_each_differences([&](auto differences) {
       for (auto& difference : report.*differences)
-        difference = renumbered(difference, WholeScene::Users{scene});
+        difference = renumbered(difference, WholeScene::Users(scene));
       to.put_all(report.*differences);
     });
   });

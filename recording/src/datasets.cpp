@@ -78,19 +78,18 @@ PositionsWriter write_object(hid_t file, std::size_t place, const RecordedObject
 
 }  // namespace
 
-std::vector<Rows> rows_of(const DetectResult& result, const Places& place_of) {
-  std::vector<Rows> all;
-  for_each_list([&]<class Row>(const ResultList<Row>&, auto member) {
-    const std::span<const Row> rows = member(result);
-    if constexpr (Described<Row>) {
-      for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
-        if constexpr (std::is_same_v<Value, ObjectId>) {
-          for (const Row& row : rows) place_of(row.*field.member);
-        }
-      });
+std::vector<ListRows> checked_rows(const DetectResult& result, const Places& place_of) {
+  std::vector<ListRows> all = rows_of(result);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const RecordInfo& record = list_infos()[i].record;
+    for (const FieldInfo& field : record.fields) {
+      for (std::size_t row = 0; field.kind == FieldInfo::Kind::object && row < all[i].count; ++row) {
+        ObjectId id;
+        std::memcpy(&id, all[i].data + row * record.bytes + field.offset, sizeof id);
+        place_of(id);
+      }
     }
-    all.push_back({reinterpret_cast<const std::byte*>(rows.data()), rows.size()});
-  });
+  }
   return all;
 }
 
@@ -99,7 +98,7 @@ RaggedWriter::RaggedWriter(hid_t file, const ListLayout& layout)
       columns_(create_columns(file, layout.group, layout.columns, rows_in_chunk)),
       end_(file, layout.group + "/end", ScalarType::uint64, 1, frames_in_chunk) {}
 
-void RaggedWriter::append(const Rows& rows, const Places& place_of) {
+void RaggedWriter::append(const ListRows& rows, const Places& place_of) {
   for (std::size_t c = 0; rows.count > 0 && c < columns_.size(); ++c) {
     const Column& column = layout_->columns[c];
     std::byte* to = columns_[c].append(rows.count);

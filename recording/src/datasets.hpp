@@ -45,22 +45,15 @@ class Places {
   std::vector<std::optional<Entry>> by_index_;
 };
 
-/// The rows of one list of a frame.
-struct Rows {
-  const std::byte* data = nullptr;
-  std::size_t count = 0;
-};
-
-/// The rows of all lists, in the order of `for_each_list`. Throws `Error` when a row names an object that the
-/// recording does not have.
-std::vector<Rows> rows_of(const DetectResult& result, const Places& place_of);
+/// The rows of all lists. Throws `Error` when a row names an object that the recording does not have.
+std::vector<ListRows> checked_rows(const DetectResult& result, const Places& place_of);
 
 /// A group with any number of rows per frame, and the end of each frame.
 class RaggedWriter {
  public:
   RaggedWriter(hid_t file, const ListLayout& layout);
 
-  void append(const Rows& rows, const Places& place_of);
+  void append(const ListRows& rows, const Places& place_of);
   template <class Function>
   void for_each_column(Function function) {
     for (ColumnWriter& column : columns_) function(column);
@@ -94,7 +87,7 @@ struct Datasets {
   }
 
   std::vector<std::optional<PositionsWriter>> positions;  ///< empty for objects that are elsewhere
-  std::vector<RaggedWriter> lists;                        ///< in the order of `for_each_list`
+  std::vector<RaggedWriter> lists;                        ///< in the order of `list_infos`
   std::vector<ColumnWriter> statistics;
   std::optional<ColumnWriter> time;
 };

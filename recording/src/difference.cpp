@@ -1,6 +1,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <span>
 #include <type_traits>
 
@@ -111,41 +112,22 @@ class Comparison {
            (tolerance_ > 0 && ((std::isnan(a) && std::isnan(b)) || std::fabs(a - b) <= tolerance_));
   }
   bool equal(Vec3d a, Vec3d b) const { return equal(a.x, b.x) && equal(a.y, b.y) && equal(a.z, b.z); }
-  template <std::size_t Count>
-  bool equal(const std::array<double, Count>& a, const std::array<double, Count>& b) const {
-    for (std::size_t i = 0; i < Count; ++i) {
-      if (!equal(a[i], b[i])) return false;
-    }
-    return true;
-  }
-  template <class Value>
-  Line compare(const std::string& item, const Value& a, const Value& b) const {
-    return equal(a, b) ? Line() : both(item, a, b);
-  }
 
   Line objects() const;
   Line object(std::size_t place) const;
   Line points_of(const char* item, const std::string& of, std::span<const Vec3d> a,
                  std::span<const Vec3d> b) const;
-  Line lists(const RecordedFrame& a, const RecordedFrame& b) const;
-  template <class Row>
-  Line list(const ResultList<Row>& list, const RecordedFrame& a, const RecordedFrame& b,
-            std::span<const Row> rows_a, std::span<const Row> rows_b) const;
-  template <class Row>
-  Line row(const Row& p, const Row& q) const;
-  template <class Row>
-  Line rows_of(const Row& row, const RecordedFrame& a, const RecordedFrame& b) const;
-  template <class Value>
-  Line value(const std::string& item, const Role& role, const Value& a, const Value& b) const {
-    if constexpr (!std::is_integral_v<Value> && requires { equal(a, b); }) {
-      if (role.is_rounded) return compare(item, a, b);
-    }
-    return compare_exactly(item, a, b);
-  }
+  /// The lists of a frame in one recording and in the other one.
+  struct Lists {
+    std::vector<ListRows> a, b;
+  };
+  Line list(std::size_t place, const Lists& lists) const;
+  Line row(const RecordInfo& record, const std::byte* p, const std::byte* q) const;
+  Line referred(const RecordInfo& record, const std::byte* row, const Lists& lists) const;
+  Line value(const FieldInfo& field, const std::string& item, const std::byte* p, const std::byte* q) const;
 
   std::string name(ObjectId id) const;
-  template <class Row>
-  std::string name(const Row& row) const;
+  std::string name(const RecordInfo& record, const std::byte* row) const;
 
   const Recording& a_;
   const Recording& b_;
@@ -162,24 +144,25 @@ std::string Comparison::name(ObjectId id) const {
 }
 
 /// The key of a record: `triangle 3 of object 0 'cloth' and triangle 5 of object 1 'ball'`.
-template <class Row>
-std::string Comparison::name(const Row& row) const {
+std::string Comparison::name(const RecordInfo& record, const std::byte* row) const {
   std::string text;
   for (const char side : {'a', 'b'}) {
     std::string part, object;
-    for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
-      if (!field.role.is_key || field.role.side != side) return;
-      if constexpr (std::is_same_v<Value, ObjectId>) {
-        object = name(row.*field.member);
-      } else if constexpr (std::is_same_v<Value, std::array<std::uint32_t, 2>>) {
-        const auto& [first, second] = row.*field.member;
-        part = std::string(word_of(kind_of_element(row, side))) + " " + std::to_string(first);
-        if (first != second) part += " " + std::to_string(second);  // an edge
-      } else if constexpr (std::is_integral_v<Value>) {
-        part = (field.role.names == Names::triangle ? "triangle " : "vertex ") +
-               std::to_string(row.*field.member);
+    for (const FieldInfo& field : record.fields) {
+      const auto& [names, of_side, list, is_key, is_rounded] = field.role;
+      if (!is_key || of_side != side || names == Names::nothing) continue;
+      const auto number = [&](std::size_t i) { return static_cast<std::uint32_t>(number_of(field, row, i)); };
+      if (names == Names::object) {
+        object = name(ObjectId{number(0), number(1)});
+        continue;
       }
-    });
+      const FeatureKind kind = names == Names::element    ? record.kind_of_element(row, side)
+                               : names == Names::triangle ? FeatureKind::face
+                                                          : FeatureKind::vertex;
+      part = names == Names::triangle ? "triangle" : word_of(kind);
+      for (std::size_t i = 0; i < (names == Names::element && number(0) != number(1) ? 2u : 1u); ++i)
+        part.append(" ").append(std::to_string(number(i)));  // two of an edge
+    }
     text += (text.empty() ? "" : " and ") + part + (part.empty() ? "" : " of ") + object;
   }
   return text;
@@ -234,113 +217,102 @@ Line Comparison::points_of(const char* item, const std::string& of, std::span<co
   return {};
 }
 
-/// The key of a record, by which lists are sorted.
-struct Key {
-  std::array<std::uint64_t, 10> numbers{};
-  std::size_t count = 0;
-
-  void add(std::uint64_t number) { numbers[count++] = number; }
-  auto operator<=>(const Key&) const = default;
-};
-
-template <class Row>
-Key key_of(const Row& row) {
-  Key key;
-  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
-    if (!field.role.is_key) return;
-    const Value& value = row.*field.member;
-    if constexpr (std::is_same_v<Value, ObjectId>) {
-      key.add(value.index);
-      key.add(value.generation);
-    } else if constexpr (std::is_same_v<Value, std::array<std::uint32_t, 2>>) {
-      for (const std::uint32_t number : value) key.add(number);
-    } else if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>) {
-      key.add(static_cast<std::uint64_t>(value));
-    }
-  });
-  return key;
-}
-
-/// Compares all lists: of records row by row, in the order of their keys. What a record refers to in lists of
+/// Compares two lists of records row by row, in the order of their keys. What a record refers to in lists of
 /// values is compared with the record.
-Line Comparison::lists(const RecordedFrame& a, const RecordedFrame& b) const {
-  Line line;
-  for_each_list([&]<class Row>(const ResultList<Row>& of, auto member) {
-    if constexpr (Described<Row>) {
-      if (!line) line = list(of, a, b, std::span<const Row>(member(a)), std::span<const Row>(member(b)));
-    }
-  });
-  return line;
-}
-
-template <class Row>
-Line Comparison::list(const ResultList<Row>& list, const RecordedFrame& a, const RecordedFrame& b,
-                      std::span<const Row> rows_a, std::span<const Row> rows_b) const {
-  std::string item = list.item;
+Line Comparison::list(std::size_t place, const Lists& lists) const {
+  const ListInfo& info = list_infos()[place];
+  const ListRows &rows_a = lists.a[place], &rows_b = lists.b[place];
+  std::string item = info.item;
   if (item.starts_with("events/")) item = "event " + item.substr(std::string_view("events/").size());
-  const bool has_key = key_of(Row{}).count > 0;
+  const bool has_key = info.record.fields[0].role.is_key;
   if (!has_key) {
-    if (Line line = compare_exactly("number of " + item + "s", rows_a.size(), rows_b.size())) return line;
+    if (Line line = compare_exactly("number of " + item + "s", rows_a.count, rows_b.count)) return line;
   }
-  for (std::size_t i = 0; i < rows_a.size() || i < rows_b.size(); ++i) {
-    const Key key_a = i < rows_a.size() ? key_of(rows_a[i]) : Key{};
-    const Key key_b = i < rows_b.size() ? key_of(rows_b[i]) : Key{};
-    const bool only_a = i >= rows_b.size() || (i < rows_a.size() && key_a < key_b);
-    const bool only_b = i >= rows_a.size() || (i < rows_b.size() && key_b < key_a);
+  std::vector<std::uint64_t> key_a, key_b;
+  const auto row_of = [&](const ListRows& rows, std::size_t i, std::vector<std::uint64_t>& key) {
+    key.clear();
+    const std::byte* const at = i < rows.count ? rows.data + i * info.record.bytes : nullptr;
+    if (at != nullptr) add_key(info.record, at, key);
+    return at;
+  };
+  for (std::size_t i = 0; i < rows_a.count || i < rows_b.count; ++i) {
+    const std::byte* const row_a = row_of(rows_a, i, key_a);
+    const std::byte* const row_b = row_of(rows_b, i, key_b);
+    const bool only_a = row_b == nullptr || (row_a != nullptr && key_a < key_b);
+    const bool only_b = row_a == nullptr || (row_b != nullptr && key_b < key_a);
     if (only_a || only_b)
-      return item + " " + std::to_string(i) + ": " + name(only_a ? rows_a[i] : rows_b[i]) + " only in the " +
-             (only_a ? "first" : "second") + " recording (" + std::to_string(rows_a.size()) + " and " +
-             std::to_string(rows_b.size()) + " in all)";
-    Line line = row(rows_a[i], rows_b[i]);
-    if (!line) line = rows_of(rows_a[i], a, b);
+      return item + " " + std::to_string(i) + ": " + name(info.record, only_a ? row_a : row_b) +
+             " only in the " + (only_a ? "first" : "second") + " recording (" + std::to_string(rows_a.count) +
+             " and " + std::to_string(rows_b.count) + " in all)";
+    Line line = row(info.record, row_a, row_b);
+    if (!line) line = referred(info.record, row_a, lists);
     if (!line) continue;
-    return item + " " + std::to_string(i) + ", " + (has_key ? name(rows_a[i]) + ", " : "") + *line;
+    return item + " " + std::to_string(i) + ", " + (has_key ? name(info.record, row_a) + ", " : "") + *line;
   }
   return {};
 }
 
-template <class Row>
-Line Comparison::row(const Row& p, const Row& q) const {
-  Line line;
-  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
-    if (line || field.role.is_key) return;
-    const Value &a = p.*field.member, &b = q.*field.member;
-    if constexpr (std::is_same_v<Value, Feature>) {
-      line = first_of([&] { return compare_exactly(field.key, a.kind, b.kind); },
-                      [&] { return compare_exactly(name_of_feature_index(field.key), a.index, b.index); });
-    } else if constexpr (!std::is_same_v<Value, ObjectId>) {
-      line = value(field.key, field.role, a, b);
-    }
-  });
-  return line;
+Line Comparison::row(const RecordInfo& record, const std::byte* p, const std::byte* q) const {
+  for (const FieldInfo& field : record.fields) {
+    if (field.role.is_key) continue;
+    if (Line line = value(field, field.name, p, q)) return line;
+  }
+  return {};
+}
+
+std::string text_of(const FieldInfo& field, const std::byte* row, std::size_t place) {
+  if (field.scalar == ScalarType::float64) return to_text(real_number(field, row, place));
+  const std::uint64_t number = number_of(field, row, place);
+  return field.words.empty() ? std::to_string(number) : quoted(field.words[number]);
+}
+std::string text_of(const FieldInfo& field, const std::byte* row) {
+  if (field.count == 1) return text_of(field, row, 0);
+  std::string text;
+  for (std::size_t i = 0; i < field.count; ++i)
+    text.append(i == 0 ? "(" : ", ").append(text_of(field, row, i));
+  return text + ")";
+}
+
+/// Compares a member of two records.
+Line Comparison::value(const FieldInfo& field, const std::string& item, const std::byte* p,
+                       const std::byte* q) const {
+  const auto is_equal = [&](std::size_t i) {
+    const std::size_t at = field.offset + i * size_of(field.scalar);
+    if (std::memcmp(p + at, q + at, size_of(field.scalar)) == 0) return true;
+    return field.scalar == ScalarType::float64 && field.role.is_rounded &&
+           equal(real_number(field, p, i), real_number(field, q, i));
+  };
+  std::size_t i = 0;
+  while (i < field.count && is_equal(i)) ++i;
+  if (i == field.count) return {};
+  if (field.kind != FieldInfo::Kind::feature)
+    return item + ": " + text_of(field, p) + " and " + text_of(field, q);
+  FieldInfo part = field;  // a feature is a kind and an index
+  if (i == 1) part.words = {};
+  return (i == 0 ? item : name_of_feature_index(item)) + ": " + text_of(part, p, i) + " and " +
+         text_of(part, q, i);
 }
 
 /// Compares the values to which two records with equal ranges refer.
-template <class Row>
-Line Comparison::rows_of(const Row& row, const RecordedFrame& a, const RecordedFrame& b) const {
-  Line line;
-  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& first) {
-    if constexpr (std::is_same_v<Value, std::uint32_t>) {
-      if (first.role.names != Names::first_row) return;
-      const std::string_view name = first.role.list;
-      std::size_t count = 0;
-      for_each_field<Row>([&]<class Count>(const Field<Row, Count>& field) {
-        if constexpr (std::is_integral_v<Count>) {
-          if (field.role.names == Names::rows && name == field.role.list) count += row.*field.member;
-        }
-      });
-      for_each_list([&]<class Item>(const ResultList<Item>& list, auto member) {
-        if constexpr (!Described<Item>) {
-          for (std::size_t i = 0; !line && name == list.name && i < count; ++i) {
-            const std::size_t at = row.*first.member + i;
-            line = value(std::string(list.item) + " " + std::to_string(i), list.role, member(a)[at],
-                         member(b)[at]);
-          }
-        }
-      });
+Line Comparison::referred(const RecordInfo& record, const std::byte* row, const Lists& lists) const {
+  for (const FieldInfo& first : record.fields) {
+    if (first.role.names != Names::first_row) continue;
+    const std::size_t place = place_of_list(first.role.list);
+    const ListInfo& info = list_infos()[place];
+    if (*info.record.name != 0) continue;  // a list of records is compared by itself
+    std::size_t count = 0;
+    for (const FieldInfo& field : record.fields) {
+      if (field.role.names == Names::rows && std::string_view(first.role.list) == field.role.list)
+        count += number_of(field, row);
     }
-  });
-  return line;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t at = (number_of(first, row) + i) * info.record.bytes;
+      if (Line line = value(info.record.fields[0], std::string(info.item) + " " + std::to_string(i),
+                            lists.a[place].data + at, lists.b[place].data + at))
+        return line;
+    }
+  }
+  return {};
 }
 
 Line Comparison::frame(std::uint64_t number) const {
@@ -353,7 +325,11 @@ Line Comparison::frame(std::uint64_t number) const {
                               b_.positions(number, place)))
       return line;
   }
-  if (Line line = lists(a, b)) return line;
+  const Lists lists{supple::rows_of(a), supple::rows_of(b)};
+  for (std::size_t place = 0; place < list_infos().size(); ++place) {
+    if (*list_infos()[place].record.name == 0) continue;
+    if (Line line = list(place, lists)) return line;
+  }
   // Counts of work depend on the number of ranks.
   if (a_.header().ranks != b_.header().ranks) return {};
   return compare_described("statistics, ", a.stats, b.stats);

@@ -6,38 +6,25 @@
 namespace supple {
 namespace {
 
-template <class Struct, class Value>
-std::size_t offset_of(Value Struct::*member) {
-  const Struct row{};
-  return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&(row.*member)) -
-                                  reinterpret_cast<const std::byte*>(&row));
-}
-
-template <class Value>
-Column column(std::string name, std::size_t offset) {
-  using Stored = Storage<Value>;
-  static_assert(sizeof(Value) == size_of(Stored::type) * Stored::width);
-  return {std::move(name), Stored::type, Stored::width, offset, std::is_same_v<Value, bool>, false};
-}
-
-template <Described Row>
-std::vector<Column> columns_of_record() {
-  static_assert(std::is_trivially_copyable_v<Row>);
+std::vector<Column> columns_of(const RecordInfo& record) {
   std::vector<Column> columns;
-  for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
-    const std::size_t offset = offset_of(field.member);
-    if constexpr (std::is_same_v<Value, ObjectId>) {
-      columns.push_back(column<std::uint32_t>(std::string("object_") + field.role.side,
-                                              offset + offset_of(&ObjectId::index)));
-      columns.back().is_object = true;
-    } else if constexpr (std::is_same_v<Value, Feature>) {
-      columns.push_back(column<FeatureKind>(field.key, offset + offset_of(&Feature::kind)));
-      columns.push_back(
-          column<std::uint8_t>(name_of_feature_index(field.key), offset + offset_of(&Feature::index)));
-    } else {
-      columns.push_back(column<Value>(field.key, offset));
+  for (const FieldInfo& field : record.fields) {
+    const bool is_truth = field.scalar == ScalarType::boolean;
+    const ScalarType stored = is_truth ? ScalarType::uint8 : field.scalar;
+    switch (field.kind) {
+      case FieldInfo::Kind::numbers:
+        columns.push_back({field.name, stored, field.count, field.offset, is_truth, false});
+        break;
+      case FieldInfo::Kind::object:
+        columns.push_back({std::string("object_") + field.role.side, stored, 1,
+                           field.offset + offsetof(ObjectId, index), false, true});
+        break;
+      case FieldInfo::Kind::feature:
+        columns.push_back({field.name, stored, 1, field.offset + offsetof(Feature, kind), false, false});
+        columns.push_back({name_of_feature_index(field.name), stored, 1,
+                           field.offset + offsetof(Feature, index), false, false});
     }
-  });
+  }
   return columns;
 }
 
@@ -46,19 +33,15 @@ std::vector<Column> columns_of_record() {
 const std::vector<ListLayout>& list_layouts() {
   static const std::vector<ListLayout> layouts = [] {
     std::vector<ListLayout> all;
-    for_each_list([&]<class Row>(const ResultList<Row>& list, auto) {
-      if constexpr (Described<Row>)
-        all.push_back({list.name, sizeof(Row), columns_of_record<Row>()});
-      else
-        all.push_back({list.name, sizeof(Row), {column<Row>(list.value, 0)}});
-    });
+    for (const ListInfo& list : list_infos())
+      all.push_back({list.name, list.record.bytes, columns_of(list.record)});
     return all;
   }();
   return layouts;
 }
 
 const std::vector<Column>& columns_of_statistics() {
-  static const std::vector<Column> columns = columns_of_record<StepStats>();
+  static const std::vector<Column> columns = columns_of(record_info<StepStats>());
   return columns;
 }
 

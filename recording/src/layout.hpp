@@ -1,17 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
-#include "supple/result_lists.hpp"
+#include "supple/record_info.hpp"
 #include "supple/types.hpp"
 
 // The content of a recording and its location in the file, as docs/recording.md describes. Rows refer to
@@ -28,48 +24,6 @@ inline constexpr std::uint32_t oldest_version = 1;
 // The names of attributes and columns of this version in another version.
 std::string attribute_in_version(const std::string& name, std::uint32_t version);
 std::string column_in_version(const std::string& name, std::uint32_t version);
-
-enum class ScalarType : std::uint8_t { uint8, uint32, uint64, float64 };
-
-constexpr std::size_t size_of(ScalarType type) {
-  return type == ScalarType::uint8 ? 1 : type == ScalarType::uint32 ? 4 : 8;
-}
-
-/// How a field of a row is stored: one or more scalars of one type.
-template <class Field>
-struct Storage;
-template <class Field>
-requires(std::is_enum_v<Field> || std::is_same_v<Field, std::uint8_t> ||
-         std::is_same_v<Field, bool>) struct Storage<Field> {
-  static_assert(sizeof(Field) == 1);
-  static constexpr ScalarType type = ScalarType::uint8;
-  static constexpr std::size_t width = 1;
-};
-template <>
-struct Storage<std::uint32_t> {
-  static constexpr ScalarType type = ScalarType::uint32;
-  static constexpr std::size_t width = 1;
-};
-template <>
-struct Storage<std::uint64_t> {
-  static constexpr ScalarType type = ScalarType::uint64;
-  static constexpr std::size_t width = 1;
-};
-template <>
-struct Storage<double> {
-  static constexpr ScalarType type = ScalarType::float64;
-  static constexpr std::size_t width = 1;
-};
-template <>
-struct Storage<Vec3d> {
-  static constexpr ScalarType type = ScalarType::float64;
-  static constexpr std::size_t width = 3;
-};
-template <class Scalar, std::size_t Count>
-struct Storage<std::array<Scalar, Count>> {
-  static constexpr ScalarType type = Storage<Scalar>::type;
-  static constexpr std::size_t width = Count;
-};
 
 /// A dataset that holds one field of each row.
 struct Column {
@@ -95,7 +49,7 @@ struct ListLayout {
   std::vector<Column> columns;
 };
 
-/// Those of a result, in the order of `for_each_list`.
+/// Those of a result, in the order of `list_infos`.
 const std::vector<ListLayout>& list_layouts();
 /// One column for each statistic; the rows are `StepStats`.
 const std::vector<Column>& columns_of_statistics();

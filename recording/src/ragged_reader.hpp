@@ -39,7 +39,7 @@ class RaggedReader {
  public:
   /// A group that the file lacks because an earlier program wrote it has no rows.
   RaggedReader(const InputFile& file, std::uint32_t version, const ListLayout& layout, std::uint64_t frames)
-      : file_(&file) {
+      : file_(&file), row_bytes_(layout.row_bytes) {
     if (!is_in_every_version(layout.group) && !file.has_item(layout.group)) return;
     end_.emplace(file, layout.group + "/end", ScalarType::uint64, std::vector<hsize_t>{});
     for (const Column& column : layout.columns) {
@@ -52,19 +52,16 @@ class RaggedReader {
     check_ends(frames);
   }
 
-  /// Objects have their index in the file.
-  template <class Row>
-  std::vector<Row> rows(std::uint64_t frame) {
-    if (!end_) return {};
-    const std::uint64_t first = frame == 0 ? 0 : end_of(frame - 1);
-    std::vector<Row> rows(end_of(frame) - first);
+  std::size_t count(std::uint64_t frame) { return end_ ? end_of(frame) - begin_of(frame) : 0; }
+  /// Reads the rows of a frame; objects have their index in the file.
+  void read(std::uint64_t frame, std::byte* rows) {
+    const std::size_t total = count(frame);
     for (auto& [column, reader] : columns_) {
       const std::size_t bytes = column->bytes();
-      bytes_.resize(rows.size() * bytes);
-      reader.read(first, rows.size(), bytes_.data());
-      for (std::size_t i = 0; i < rows.size(); ++i) load(*column, bytes_.data() + i * bytes, &rows[i]);
+      bytes_.resize(total * bytes);
+      reader.read(begin_of(frame), total, bytes_.data());
+      for (std::size_t i = 0; i < total; ++i) load(*column, bytes_.data() + i * bytes, rows + i * row_bytes_);
     }
-    return rows;
   }
 
   /// Reports a bad value in a row of the frame.
@@ -79,6 +76,7 @@ class RaggedReader {
   }
 
  private:
+  std::uint64_t begin_of(std::uint64_t frame) { return frame == 0 ? 0 : end_of(frame - 1); }
   std::uint64_t end_of(std::uint64_t frame) {
     std::uint64_t end = 0;
     end_->read(frame, 1, reinterpret_cast<std::byte*>(&end));
@@ -103,6 +101,7 @@ class RaggedReader {
   }
 
   const InputFile* file_;
+  std::size_t row_bytes_;
   std::optional<ColumnReader> end_;  ///< empty: the file lacks the group
   struct ColumnInFile {
     const Column* of;

@@ -108,7 +108,7 @@ class Recorder::Implementation {
   void create(const RecordingHeader& header);
   void check_open() const;
   void check_positions(std::span<const std::span<const Vec3d>> positions) const;
-  void append(double time, std::span<const std::span<const Vec3d>> positions, std::span<const Rows> lists,
+  void append(double time, std::span<const std::span<const Vec3d>> positions, std::span<const ListRows> lists,
               const StepStats& stats);
   bool flush_is_due();
   std::size_t pending_bytes();
@@ -227,7 +227,7 @@ void Recorder::Implementation::add(double time, std::span<const std::span<const 
                                    const DetectResult& result) {
   check_open();
   check_positions(positions);
-  const std::vector<Rows> lists = rows_of(result, place_of_);
+  const std::vector<ListRows> lists = checked_rows(result, place_of_);
   const QuietErrors quiet;
   try {
     append(time, positions, lists, result.stats);
@@ -243,7 +243,7 @@ void Recorder::Implementation::add(double time, std::span<const std::span<const 
 }
 
 void Recorder::Implementation::append(double time, std::span<const std::span<const Vec3d>> positions,
-                                      std::span<const Rows> lists, const StepStats& stats) {
+                                      std::span<const ListRows> lists, const StepStats& stats) {
   for (std::size_t place = 0; place < objects_.size(); ++place) {
     Object& object = objects_[place];
     if (!datasets_->positions[place] || (object.is_static && frames_ > 0)) continue;

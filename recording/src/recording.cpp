@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -109,7 +110,7 @@ class OpenFiles {
   ColumnReader time_;  ///< opened before the files of ranks, which have all frames that it has
   std::map<std::string, InputFile> files_of_ranks_;
   RecordingHeader header_;
-  std::vector<RaggedReader> lists_;  ///< in the order of `for_each_list`
+  std::vector<RaggedReader> lists_;  ///< in the order of `list_infos`
   std::vector<std::optional<ColumnReader>>
       statistics_;  ///< in the order of `StepStats`; empty if the file lacks it
   std::vector<ColumnReader> positions_;
@@ -194,31 +195,28 @@ RecordedFrame OpenFiles::frame(std::uint64_t number) {
 /// Reads the events, or the other lists. Records have ids of objects when all that they refer to is checked.
 void OpenFiles::read_lists(std::uint64_t number, RecordedFrame& frame, bool with_records) {
   const auto for_each = [&](auto visit) {
-    std::size_t i = 0;
+    std::size_t place = 0;
     for_each_list([&]<class Row>(const ResultList<Row>& list, auto member) {
-      RaggedReader& reader = lists_[i++];
       const bool is_event = std::string_view(list.name).starts_with("events/");
-      if (is_event != with_records) visit(list, reader, member(frame));
+      if (is_event != with_records) visit(place, member(frame));
+      ++place;
     });
   };
-  for_each([&]<class Row>(const ResultList<Row>&, RaggedReader& reader, std::vector<Row>& rows) {
-    rows = reader.rows<Row>(number);
+  for_each([&]<class Row>(std::size_t place, std::vector<Row>& rows) {
+    rows.resize(lists_[place].count(number));
+    lists_[place].read(number, reinterpret_cast<std::byte*>(rows.data()));
   });
   const ReferenceCheck check(header_.objects, frame, [&](const BadReference& bad) {
-    std::size_t i = 0;
-    while (list_layouts()[i].group != bad.list) ++i;
-    lists_[i].fail(number, bad);
+    lists_[place_of_list(bad.list)].fail(number, bad);
   });
-  for_each([&]<class Row>(const ResultList<Row>& list, RaggedReader&, std::vector<Row>& rows) {
-    check.rows(list, std::span<const Row>(rows));
-  });
-  for_each([&]<class Row>(const ResultList<Row>&, RaggedReader&, std::vector<Row>& rows) {
-    if constexpr (Described<Row>) {
-      for_each_field<Row>([&]<class Value>(const Field<Row, Value>& field) {
-        if constexpr (std::is_same_v<Value, ObjectId>) {
-          for (Row& row : rows) row.*field.member = header_.objects[(row.*field.member).index].id;
-        }
-      });
+  for_each([&](std::size_t place, const auto&) { check.list(place); });
+  for_each([&]<class Row>(std::size_t place, std::vector<Row>& rows) {
+    for (const FieldInfo& field : list_infos()[place].record.fields) {
+      for (std::size_t i = 0; field.kind == FieldInfo::Kind::object && i < rows.size(); ++i) {
+        std::byte* const row = reinterpret_cast<std::byte*>(&rows[i]);
+        const ObjectId id = header_.objects[number_of(field, row)].id;
+        std::memcpy(row + field.offset, &id, sizeof id);
+      }
     }
   });
 }

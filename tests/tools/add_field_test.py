@@ -23,7 +23,7 @@ class AddField(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        for part in ("include", "recording"):
+        for part in ("include", "libs/describe", "recording", "src/supple/core"):
             shutil.copytree(ROOT / part, self.folder / part)
 
     def change(self, file, before, after):
@@ -33,8 +33,11 @@ class AddField(unittest.TestCase):
 
     def columns(self):
         (self.folder / "main.cpp").write_text(PROGRAM)
-        includes = ["-Iinclude", "-Irecording/include", "-Irecording/src"]
-        done = subprocess.run(["c++", "-std=c++20", *includes, "main.cpp", "recording/src/layout.cpp", "-o", "columns"],
+        includes = ["-Iinclude", "-Irecording/include", "-Irecording/src", "-Ilibs/describe/include",
+                    "-Isrc/supple"]
+        done = subprocess.run(["c++", "-std=c++20", *includes, "main.cpp", "recording/src/layout.cpp",
+                               "libs/describe/record_info.cpp", "src/supple/core/error.cpp",
+                               "src/supple/core/utf8.cpp", "-o", "columns"],
                               cwd=self.folder, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         return subprocess.run(["./columns"], cwd=self.folder, capture_output=True, text=True, check=True).stdout.split()
@@ -45,7 +48,7 @@ class AddField(unittest.TestCase):
                     "  double age = 0;\n  Vec3d normal{};  ///< unit vector from the vertex")
         line = '    visit_field(visitor, "vertex", &Row::vertex, "Vertex of object a", role::key(Names::vertex, \'a\'));\n' \
                '    visit_field(visitor, "triangle", &Row::triangle'
-        self.change("include/supple/record_descriptions.hpp", line,
+        self.change("libs/describe/include/supple/record_descriptions.hpp", line,
                     '    visit_field(visitor, "age", &Row::age, "Seconds since the vertex entered", {}, "s");\n' + line)
         self.assertEqual(set(self.columns()) - set(before), {"penetrations/age"})
 

@@ -43,6 +43,49 @@ nb::object table_of(const std::shared_ptr<Lists>& lists, const DetectResult& fou
 
 }  // namespace
 
+nb::list members_of(const RecordInfo& record) {
+  static constexpr const char* codes[] = {"?", "u1", "u4", "u8", "f8"};  // by `ScalarType`
+  nb::list members;
+  for (const FieldInfo& field : record.fields) {
+    nb::object words = nb::none();
+    if (!field.words.empty()) {
+      nb::list list;
+      for (const char* word : field.words) list.append(word);
+      words = nb::tuple(list);
+    }
+    const auto add = [&](const char* part, std::size_t count, std::size_t offset, const nb::object& values) {
+      const std::string place = field.place < 0 ? "" : "_" + std::to_string(field.place);
+      members.append(nb::make_tuple(field.name + std::string(part) + place,
+                                    codes[static_cast<std::size_t>(field.scalar)], count,
+                                    field.offset + offset, values, field.doc, field.unit));
+    };
+    switch (field.kind) {
+      case FieldInfo::Kind::numbers:
+        add("", field.count == 1 ? 0 : field.count, 0, words);
+        break;
+      case FieldInfo::Kind::object:
+        add("", 0, offsetof(ObjectId, index), nb::none());
+        add("_generation", 0, offsetof(ObjectId, generation), nb::none());
+        break;
+      case FieldInfo::Kind::feature:
+        add("_kind", 0, offsetof(Feature, kind), words);
+        add("_index", 0, offsetof(Feature, index), nb::none());
+    }
+  }
+  return members;
+}
+
+std::vector<std::size_t> padding_of(const RecordInfo& record) {
+  std::vector<bool> is_used(record.bytes);
+  for (const FieldInfo& field : record.fields)
+    std::fill_n(is_used.begin() + static_cast<std::ptrdiff_t>(field.offset), field.bytes(), true);
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < record.bytes; ++i) {
+    if (!is_used[i]) places.push_back(i);
+  }
+  return places;
+}
+
 std::unique_ptr<Result> copy_of(const DetectResult& found) {
   const auto memory = std::make_shared<std::vector<std::shared_ptr<const void>>>();
   auto copy = std::make_unique<Result>(Result{found, std::make_shared<Lists>(Lists{nullptr, memory})});
@@ -79,14 +122,14 @@ void bind_results(nb::module_& module) {
 
   module.def("lists", [] {
     nb::dict lists;
-    for_each_list([&](const auto& list, auto) { lists[list.name] = nb::make_tuple(list.item, list.doc); });
+    for (const ListInfo& list : list_infos()) lists[list.name] = nb::make_tuple(list.item, list.doc);
     return lists;
   });
   module.def("layouts", [] {
     nb::dict layouts;
-    for_each_list([&]<class Row>(const ResultList<Row>&, auto) {
-      if constexpr (Described<Row>) add_layout<Row>(layouts);
-    });
+    for (const auto& [name, item, doc, answers, record] : list_infos()) {
+      if (*record.name != 0) layouts[record.name] = nb::make_tuple(record.bytes, members_of(record));
+    }
     add_layout<ContactGroup>(layouts);
     add_layout<EndedManifold>(layouts);
     add_layout<NonFiniteVertex>(layouts);

@@ -383,6 +383,8 @@ CONTRACTS = {
         'Unusable input: an option out of range, an unknown object, a file that cannot be read.\n\n`what()` is one line of valid UTF-8 without a trailing newline. It says what is wrong, where, and how to fix it: `rabbit.obj:17: face index 99 is out of range; the file has 12 vertices so far`. A broken invariant inside the library is never an `Error`; it asserts in debug builds.',
     'Field::has_truth_words':
         'See `Field::has_truth_words` in supple/description.hpp.',
+    'FieldInfo::bytes':
+        'See `FieldInfo::bytes` in supple/record_info.hpp.',
     'MassSpringBody::add_drift':
         'Adds a velocity to each mass that is not fixed, as the paper does (v_i = v_i + v_d), and to the air around it, so that friction does not stop the drift.',
     'MassSpringBody::angular_momentum':
@@ -619,6 +621,8 @@ CONTRACTS = {
         'See `VerifyReport::agrees` in supple/verify.hpp.',
     'VerifyReport::difference_count':
         'See `VerifyReport::difference_count` in supple/verify.hpp.',
+    'add_key':
+        'The members of the key of a row, as numbers in their order: lists are sorted by it.',
     'advice_for_open_surface':
         'How to close a surface that is open, as a clause for messages: close the holes, or weld the seams.',
     'apply_wave_motion':
@@ -685,6 +689,8 @@ CONTRACTS = {
         "The kind of the element of side 'a' or 'b', which says what its numbers and weights mean. Records without kinds have faces.",
     'least_margin':
         'The least margin with which proximity finds the pairs of two objects before they come nearer than the thickness, m. `Simulation` raises the margins of its objects to it.',
+    'list_infos':
+        'The lists of a result, in the order of `for_each_list`.',
     'list_of_set_words':
         '`none, or one or more of a, b, with commas`',
     'list_of_words':
@@ -705,6 +711,8 @@ CONTRACTS = {
         'Names of the built-in models, which replace the models of the paper, with their numbers of vertices and faces: pawn (154, 304), fish (216, 338), rabbit (453, 902), human (1250, 2500), bike (9543, 18238).',
     'norm':
         'See `norm` in supple/types.hpp.',
+    'number_of':
+        'A scalar of a member as a whole number.',
     'octree_of_2007':
         "The paper's octree of an object: regular, down to single triangles.",
     'one_line':
@@ -713,12 +721,18 @@ CONTRACTS = {
         'See `operator|` in supple/options.hpp.',
     'operator|=':
         'See `operator|=` in supple/options.hpp.',
+    'place_of_list':
+        'The place of a list in `list_infos`. Throws `Error` when there is no list with this name.',
     'point_edge_distance':
         'See `point_edge_distance` in supple/distance.hpp.',
     'point_point_distance':
         'The distance and the closest points of two elements; nothing when they are farther apart or not finite.',
     'point_triangle_distance':
         'See `point_triangle_distance` in supple/distance.hpp.',
+    'real_number':
+        'A double of a member.',
+    'record_info':
+        'The members of records inside a record are its members; those of an array of records have a place.',
     'respond':
         'Changes the velocities of bodies so that they do not pass through anything in a step of `dt` seconds, with friction and restitution. Call it when the velocities of the step are known, and move the vertices after it:\n\n```cpp\nfor (std::size_t v = 0; v < x.size(); ++v) velocities[v] += dt / masses[v] * forces[v];\nconst double part = supple::respond(scene, cloth, velocities, masses, dt, {.thickness = 0.01});\nfor (std::size_t v = 0; v < x.size(); ++v) x[v] += part * dt * velocities[v];\nscene.set_positions(cloth, x);\n```\n\nThe scene holds the positions at the start of the step. `respond` searches proximity once, with the margins of the objects, then continuous contacts with `SceneOptions.impact`, at most `iterations` times. Give objects that may meet margins whose sum is about 1.5 times the thickness; with smaller margins, or none, they come nearer than the thickness, but still do not pass through each other. Objects that are not among `bodies` are at rest and do not react. Groups, masks, the filter and `self_collision` apply.\n\nIt does not change `Scene.result` and the events. The bodies are on the paths of the whole step (`Scene.set_motion`) until other positions are set.\n\nReturns the part of the step, 0 to 1, in which nothing touches: 1 when the impulses removed all impacts, otherwise `Scene.max_step`. Bodies that move no further than this do not pass through anything. It is 0 where surfaces that touch at the start would cross; surfaces that part or slide do not shorten it.\n\nCosts one search of proximity and usually one or two of continuous contacts, and memory in proportion to the bodies and their contacts. Throws `Error` when an option, `dt` > 0 or a mass is out of its range, when the number of velocities or masses differs from that of the vertices, when an object is listed twice, and as `Scene.set_motion` does, which needs objects that are not static.',
     'role::first_row':
@@ -733,12 +747,18 @@ CONTRACTS = {
         'See `role::rows` in supple/description.hpp.',
     'role::weights':
         'See `role::weights` in supple/description.hpp.',
+    'rows_of':
+        'The rows of all lists, in the order of `list_infos`; they belong to the owner of the lists. These are a `DetectResult`, or a structure with members of the same names.',
     'save_mesh':
         'Writes a file in the format of its extension: .obj, .off, .ply (binary little endian, double), .stl (binary, single precision). Text formats print the shortest digits that read back to the same double. Throws `Error` when the extension is unknown, when the file cannot be written, and when the mesh has edges or points of no triangle and the format is not OBJ.',
     'set_failure_handler':
         'See `set_failure_handler` in supple/error.hpp.',
+    'set_rows':
+        'The inverse: the lists of a result have these rows, which stay where they are.',
     'sin_turns':
         'Sine and cosine of an angle in turns (1 is a full circle), with the same bits on every machine and compiler. The standard library does not guarantee this. The error is at most 2 ulp of 1 for |turns| < 2^20; multiples of a quarter turn are exact.',
+    'size_of':
+        'In bytes.',
     'split_into_parts':
         'Splits a mesh into its connected parts, ordered by their smallest vertices: triangles and edges that share a vertex id are connected, and a point alone is a part. Vertices that nothing uses are in no part. With `weld`, vertices with equal positions are connected too, so that a split seam joins; they stay apart in the part, so give `ObjectOptions.weld` to its object. O(n). Throws `Error` as `check_mesh` does.',
     'squared_norm':

@@ -9,6 +9,7 @@
 
 #include "bytes.hpp"
 #include "objects/home_object.hpp"
+#include "renumbered.hpp"
 #include "supple/options.hpp"
 #include "world/world.hpp"
 
@@ -28,7 +29,7 @@ struct ClusterName {
 /// object there, in which vertices and triangles have the order of the user's numbers, and the objects have
 /// the order of their ids. So contacts have the same sides and the same bits as in the whole scene. Clusters
 /// that are not needed now stay for a while, with vertices that are not finite.
-class LocalWorld {
+class LocalWorld final : public Numbers {
  public:
   explicit LocalWorld(const SceneOptions& options) : world_(options) {}
 
@@ -62,10 +63,14 @@ class LocalWorld {
     if (found == objects_.end() || found->second.slot == none) return std::nullopt;
     return world_.id_of(found->second.slot);
   }
-  // The user's numbers of an object of the world, and of what belongs to it; see `renumbered`.
-  ObjectId object(ObjectId local) const { return by_slot_[local.index]->id; }
-  std::uint32_t vertex(ObjectId local, std::uint32_t v) const { return by_slot_[local.index]->vertices[v]; }
-  std::uint32_t face(ObjectId local, std::uint32_t t) const { return by_slot_[local.index]->faces[t]; }
+  // The user's numbers of an object of the world, and of what belongs to it.
+  ObjectId object(ObjectId local) const override { return by_slot_[local.index]->id; }
+  std::uint32_t vertex(ObjectId local, std::uint32_t v) const override {
+    return by_slot_[local.index]->vertices[v];
+  }
+  std::uint32_t face(ObjectId local, std::uint32_t t) const override {
+    return by_slot_[local.index]->faces[t];
+  }
 
  private:
   struct GuestCluster {

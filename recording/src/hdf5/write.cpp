@@ -51,6 +51,7 @@ void write_attribute(hid_t file, const std::string& group, const char* name, hid
 
 hid_t native_type(ScalarType type) {
   switch (type) {
+    case ScalarType::boolean:
     case ScalarType::uint8:
       return H5T_NATIVE_UINT8;
     case ScalarType::uint32:
