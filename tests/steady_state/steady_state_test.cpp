@@ -320,7 +320,7 @@ TEST_P(SteadyStateMoves, NoAllocationsAfterWarmUp) {
 TEST_P(SteadyStateMoves, HardlyAnyAllocationsWithThreads) {
   MovingBalls balls(GetParam(), 3);
   int allocating_steps = 0;
-  constexpr int counted = 20 * MovingBalls::period;
+  constexpr int counted = 8 * MovingBalls::period;
   for (int step = 0; step < 2 * counted; ++step) {
     const std::uint64_t in_step = balls.step(step);
     if (step >= counted && in_step != 0) ++allocating_steps;

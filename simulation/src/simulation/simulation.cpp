@@ -14,18 +14,14 @@
 namespace supple {
 namespace {
 
-void check_border(const Border& border) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = border[0][axis], high = border[1][axis];
+const SimulationOptions& checked(const SimulationOptions& options) {
+  check(options);
+  for (int axis = 0; options.border && axis < 3; ++axis) {
+    const double low = (*options.border)[0][axis], high = (*options.border)[1][axis];
     if (low < high) continue;
     fail(std::string("SimulationOptions::border: along ") + "xyz"[axis] + " it goes from " +
          std::to_string(low) + " to " + std::to_string(high) + "; the first corner must be the lower one");
   }
-}
-
-const SimulationOptions& checked(const SimulationOptions& options) {
-  check(options);
-  if (options.border) check_border(*options.border);
   if (options.response) check(*options.response);
   if (options.fused_refit && !options.scene.comparison.lazy_refit)
     fail("SimulationOptions: fused_refit has no effect when all nodes are refitted; set lazy_refit, too");

@@ -26,7 +26,7 @@
 namespace supple::first_impact_test {
 
 #if defined(NDEBUG) && !defined(SUPPLE_SANITIZED)
-constexpr int queries_per_family = 8000;
+constexpr int queries_per_family = 3000;
 #else
 constexpr int queries_per_family = 320;
 #endif

@@ -369,7 +369,7 @@ class Inspection : public testing::TestWithParam<std::tuple<Family, OptionWord<B
 };
 
 TEST_P(Inspection, ExplanationsAgreeWithDetect) {
-  Known known = known_scene_of(cut(meshes(1), 120), options());
+  Known known = known_scene_of(cut(meshes(1), 50), options());
   known.scene.detect();
   check_all_explanations(known);
 }
@@ -390,7 +390,7 @@ TEST_P(Inspection, CellsHoldTheirTriangles) {
 }
 
 TEST_P(Inspection, FollowsTranslatedAndStaticObjects) {
-  const auto all = cut(meshes(4), 100);
+  const auto all = cut(meshes(4), 50);
   Known known(options());
   double size = 1;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -24,7 +24,7 @@ namespace supple::element_search_test {
 constexpr ContactKinds continuous = ContactKinds::continuous;
 // Few enough for algebra, which is slow in builds with sanitizers.
 #ifdef NDEBUG
-constexpr std::size_t triangles = 10, near_triangles = 8;
+constexpr std::size_t triangles = 7, near_triangles = 6;
 #else
 constexpr std::size_t triangles = 4, near_triangles = 4;
 #endif

@@ -605,7 +605,7 @@ class LifeOfSolids {
 
 TEST(Penetration, ReusesOnlyWhatAFreshSceneFinds) {
 #ifdef NDEBUG
-  constexpr std::uint64_t seeds = 10;
+  constexpr std::uint64_t seeds = 5;
 #else
   constexpr std::uint64_t seeds = 4;
 #endif

@@ -145,7 +145,7 @@ TEST_P(OneScene, AnswersWhatTwoWouldInAnyOrder) {
       Scene at_rest(options(ContactKinds::intersection)), moving(options(ContactKinds::continuous));
       Lives lives(GetParam(), 3);
       for (Scene* scene : {&one, &two, &at_rest, &moving}) lives.add_to(*scene);
-      for (int step = 0; step < (is_slow_to_verify ? 3 : 8); ++step) {
+      for (int step = 0; step < (is_slow_to_verify ? 3 : 5); ++step) {
         if (step > 0) lives.step({&one, &two, &at_rest, &moving});
         const Lists contacts(at_rest.detect()), impacts(moving.detect());
         const DetectResult& result = two.detect();

@@ -150,7 +150,7 @@ TEST_P(ResultSpans, OnlyDetectEndsThem) {
 
 /// A kept result outlives the next steps and the scene, and the steps are those of a scene that keeps none.
 TEST_P(ResultSpans, AreKeptOnRequest) {
-  const TriangleMesh ball = make_icosphere(3);
+  const TriangleMesh ball = make_icosphere(2);
   std::vector<Vec3d> moved = ball.positions;
   const auto make = [&] {
     Scene scene(all_lists(GetParam()));

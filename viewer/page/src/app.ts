@@ -7,16 +7,16 @@ import { embeddedJob, failJob, runJob } from "./capture/job";
 import { savePicture } from "./capture/picture";
 import { commandsOf } from "./commands";
 import { listenToKeys } from "./keyboard";
-import { Model, TOOLS, type Layer, type Tool } from "./model";
+import { Model, TOOLS, type Tool } from "./model";
 import { ComparisonPanel } from "./panels/comparison";
 import { ContactTable } from "./panels/tables/contact_table";
-import { colourOf, h, icon, iconButton, setIcon } from "./panels/dom";
+import { colourOf, h, iconButton, logo, setIcon } from "./panels/dom";
 import { FramesDialog } from "./panels/frames_dialog";
 import { helpSheet } from "./panels/help";
 import { Hover } from "./panels/hover";
 import { Inspector } from "./panels/inspector";
 import { NodePairs } from "./panels/node_pairs";
-import { Card, Notices } from "./panels/notices";
+import { cannotDraw, Card, Notices } from "./panels/notices";
 import { CurveTable } from "./panels/tables/curve_table";
 import { offersOfObject, offersOfTabs } from "./panels/offers";
 import { offersOf, Palette } from "./panels/palette";
@@ -25,10 +25,11 @@ import { PinTable } from "./panels/tables/pin_table";
 import { Player } from "./panels/player";
 import { Program } from "./panels/program";
 import { Plots } from "./panels/plots/plots";
-import { LAYER_ROWS, ScenePanel } from "./panels/scene_panel";
+import { sayFailure, ScenePanel } from "./panels/scene_panel";
 import { Settings } from "./panels/settings";
 import { Pace } from "./pace";
 import { Pins, type Pin } from "./pins";
+import { localStore } from "./storage";
 import { Tabs } from "./panels/tabs";
 import { Tools } from "./tools";
 import { openSocket } from "./transport/socket";
@@ -49,18 +50,6 @@ const TOOL_LABELS: Record<Tool, [label: string, key: string]> = {
 const THEME = "supple-theme";
 /** The view of a scene is stored under this name and its title. */
 const VIEW = "supple-view ";
-
-/** The text for a failure of the session: its message, and the layers that it switched off. */
-function sayFailure({ text, layers }: { text: string; layers: (Layer | "field")[] }): string {
-  const labels = LAYER_ROWS.filter(({ layer }) => layers.includes(layer)).map(({ label }) => label);
-  if (layers.includes("field")) labels.push("Field");
-  return labels.length > 0 ? `${text}. Switched off: ${labels.join(", ")}.` : text;
-}
-
-function cannotDraw(error: unknown): string {
-  const why = error instanceof Error ? error.message : String(error);
-  return `WebGL 2 is not available (${why}). Enable hardware acceleration, or use another browser.`;
-}
 
 export class App {
   readonly model = new Model();
@@ -440,8 +429,8 @@ export class App {
         get playing() { return player.playing; },
         counts: () => view.layers.counts(),
         project: (point: number[]) => view.pointing.project(point),
-        positionOf: (object: number, vertex: number) => view.positionOf(object, vertex),
-        centroid: (object: number, triangle: number) => view.centroid(object, triangle),
+        positionOf: (object: number, vertex: number) => view.highlights.positionOf(object, vertex),
+        centroid: (object: number, triangle: number) => view.highlights.centroid(object, triangle),
         pickAt: (x: number, y: number) => view.pointing.pickAt(x, y),
         camera: () => ({ position: view.rig.camera.position.toArray(), target: view.rig.controls.target.toArray(), zoom: view.rig.camera.zoom, orthographic: view.rig.isOrthographic }),
         cameras: () => view.panes.shown.map(({ rig }) => rig.state),
@@ -455,21 +444,5 @@ export class App {
         loseContext: () => (view.canvas.getContext("webgl2") as WebGL2RenderingContext).getExtension("WEBGL_lose_context")?.loseContext(),
       },
     });
-  }
-}
-
-function logo(): SVGSVGElement {
-  const mark = icon("");
-  mark.innerHTML = '<path d="M1 13L6 3l4 10z" fill="#56b4e9" stroke="none"/><path d="M15 13L11 4 6 11z" fill="#d55e00" stroke="none" fill-opacity=".9"/>';
-  return mark;
-}
-
-/** Reads or writes the browser's local storage; null when it is not available. */
-function localStore(name: string, value?: string): string | null {
-  try {
-    if (value !== undefined) localStorage.setItem(name, value);
-    return localStorage.getItem(name);
-  } catch {
-    return null;
   }
 }

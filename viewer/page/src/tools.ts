@@ -100,7 +100,7 @@ export class Tools {
       this.client.emit("notice", "Objects of a recording cannot be pulled; open the scene file instead.");
       return;
     }
-    const start = this.view.positionOf(object, vertex);
+    const start = this.view.highlights.positionOf(object, vertex);
     this.grip = { object, vertex, start, to: start, moved: false, pulled: false };
     this.client.ask({ do: "grab", object, vertex }).catch((error: Error) => {
       this.client.emit("notice", error.message);
@@ -137,7 +137,7 @@ export class Tools {
   }
 
   private showPull(): void {
-    this.view.showPull(this.view.positionOf(this.grip!.object, this.grip!.vertex), this.grip!.to);
+    this.view.showPull(this.view.highlights.positionOf(this.grip!.object, this.grip!.vertex), this.grip!.to);
   }
 
   /** Sends at most one command per drawn frame, however often the mouse moves. */

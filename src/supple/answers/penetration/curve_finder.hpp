@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,6 +18,21 @@
 #include "supple/result.hpp"
 
 namespace supple {
+
+/// The power of two that brings coordinates of any size to about 1, so that their squares and sums neither
+/// overflow nor vanish. It changes no other rounding.
+inline double scale_of(double largest) {
+  return std::ldexp(1.0, -std::clamp(largest > 0 ? std::ilogb(largest) : 0, -1000, 1023));
+}
+
+/// The value before scaling, at most the largest double.
+inline double restored(double scaled, double scale) {
+  constexpr double most = std::numeric_limits<double>::max();
+  return std::clamp(scaled / scale, -most, most);
+}
+inline Vec3d restored(const Vec3d& scaled, double scale) {
+  return {restored(scaled.x, scale), restored(scaled.y, scale), restored(scaled.z, scale)};
+}
 
 /// Curves with the lists that they refer to.
 struct CurveLists {

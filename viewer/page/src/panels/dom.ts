@@ -100,6 +100,12 @@ export function colourOf(name: string): string {
   return color;
 }
 
+export function logo(): SVGSVGElement {
+  const mark = icon("");
+  mark.innerHTML = '<path d="M1 13L6 3l4 10z" fill="#56b4e9" stroke="none"/><path d="M15 13L11 4 6 11z" fill="#d55e00" stroke="none" fill-opacity=".9"/>';
+  return mark;
+}
+
 /** The size of 1rem, which follows the font size that the user has set in the browser. */
 export const remPixels = (): number => parseFloat(getComputedStyle(document.documentElement).fontSize);
 

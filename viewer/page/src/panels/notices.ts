@@ -114,3 +114,9 @@ export class Card {
     action?.focus();
   }
 }
+
+/** The text for a browser without WebGL 2. */
+export function cannotDraw(error: unknown): string {
+  const why = error instanceof Error ? error.message : String(error);
+  return `WebGL 2 is not available (${why}). Enable hardware acceleration, or use another browser.`;
+}

@@ -44,6 +44,13 @@ export const LAYER_ROWS: LayerRow[] = [
   { layer: "vertices", label: "Colliding vertices", key: "J", colour: MARKS.vertex, hint: "The output of the paper: vertices of colliding octree nodes" },
 ];
 
+/** The text for a failure of the session: its message, and the layers that it switched off. */
+export function sayFailure({ text, layers }: { text: string; layers: (Layer | "field")[] }): string {
+  const labels = LAYER_ROWS.filter(({ layer }) => layers.includes(layer)).map(({ label }) => label);
+  if (layers.includes("field")) labels.push("Field");
+  return labels.length > 0 ? `${text}. Switched off: ${labels.join(", ")}.` : text;
+}
+
 function swatch(colour: string): HTMLElement {
   if (colour === "gaps") return swatchOf(GAPS);
   if (colour !== "levels") return h("span", { class: "swatch", style: colour ? `background:${colour}` : "visibility:hidden" });

@@ -55,7 +55,7 @@ export class SceneView {
   private lastTurn = 0;
   private shadowIsStale = true;
   private drawnInfo = { calls: 0, triangles: 0, points: 0 };
-  private readonly highlights: Highlights;
+  readonly highlights: Highlights;
   private ground = new THREE.Color();
   /** Between several panes. */
   private readonly line = new THREE.Color();
@@ -280,18 +280,6 @@ export class SceneView {
     this.surfaces.showField(readField(this.model), this.model.field);
   }
 
-  contactPoint(): number[] | null {
-    return this.highlights.contactPoint();
-  }
-
-  centroid(object: number, triangle: number): number[] {
-    return this.highlights.centroid(object, triangle);
-  }
-
-  positionOf(object: number, vertex: number): [number, number, number] {
-    return this.highlights.positionOf(object, vertex);
-  }
-
   /** Shows the pulled vertex and its target, or nothing. */
   showPull(from: ArrayLike<number> | null, to: ArrayLike<number> | null): void {
     this.highlights.showPull(from, to);
@@ -334,10 +322,10 @@ export class SceneView {
   /** Frames the selection: a contact, a triangle or vertex, or an object; otherwise everything. */
   frameSelection(): void {
     const { selection } = this.model;
-    const point = this.contactPoint();
+    const point = this.highlights.contactPoint();
     if (point) return this.flyTo(point);
     if (!selection) return this.frameAll();
-    if (selection.triangle !== null) return this.flyTo(this.centroid(selection.object, selection.triangle));
+    if (selection.triangle !== null) return this.flyTo(this.highlights.centroid(selection.object, selection.triangle));
     this.frameObjects([this.model.objects[selection.object]!]);
   }
 
