@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contest/cells/cells.hpp"
+#include "supple/comparison.hpp"
 
 namespace supple::benchmarks {
 namespace {
@@ -123,6 +124,7 @@ Choice choice_of(const std::vector<std::string>& words) {
 /// Returns 0 on success, 1 for wrong usage, 3 when contestants disagree.
 int main(int argument_count, char** arguments) {
   using namespace supple::benchmarks;
+  supple::use_comparison_methods();
   const std::vector<std::string> words(arguments + 1, arguments + argument_count);
   try {
     if (words == std::vector<std::string>{"--missing"}) {

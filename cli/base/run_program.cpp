@@ -17,6 +17,7 @@
 #include "base/exit_status.hpp"
 #include "base/output_file.hpp"
 #include "base/text.hpp"
+#include "supple/comparison.hpp"
 
 namespace supple::cli {
 namespace {
@@ -58,6 +59,7 @@ int report_lack_of_memory() {
 
 int run_program(const std::function<int()>& run) {
   open_closed_streams();
+  use_comparison_methods();
   std::set_terminate(terminate);
   // A limit of the file size (ulimit -f) is then an error of writing, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);

@@ -9,6 +9,7 @@
 
 #include "inputs/frame_files.hpp"
 #include "inputs/parts.hpp"
+#include "supple/comparison.hpp"
 
 namespace supple::cli {
 namespace {

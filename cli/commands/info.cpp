@@ -16,6 +16,7 @@
 #include "inputs/inputs.hpp"
 #include "inputs/parts.hpp"
 #include "session/messages/described_json.hpp"
+#include "supple/comparison.hpp"
 #include "supple/inspection.hpp"
 #include "supple/inspection_descriptions.hpp"
 #include "supple/orientation.hpp"

@@ -26,6 +26,7 @@
 #include "options/view_commands.hpp"
 #include "scene_file/scene_file.hpp"
 #include "session/settings.hpp"
+#include "supple/comparison.hpp"
 #include "supple/format_descriptions.hpp"
 #include "supple/recording.hpp"
 #include "supple/simulation_descriptions.hpp"

@@ -20,6 +20,7 @@
 #include "scene_file/scene_motion.hpp"
 #include "scene_file/toml_limits.hpp"
 #include "scene_file/toml_reader.hpp"
+#include "supple/comparison.hpp"
 #include "supple/error.hpp"
 #include "supple/format_descriptions.hpp"
 #include "supple/models.hpp"

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include "session/messages/statistics.hpp"
+#include "session/messages/frame_message.hpp"
 #include "supple/error.hpp"
 
 namespace supple::cli {

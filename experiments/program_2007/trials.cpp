@@ -199,31 +199,6 @@ class Neighbours {
   std::set<std::pair<std::uint32_t, std::uint32_t>> near_;
 };
 
-/// The hierarchy that the paper chose.
-class Hierarchy {
- public:
-  explicit Hierarchy(const Replay& replay) : scene_(options_of(replay)) {
-    for (const TriangleMesh& mesh : replay.objects)
-      ids_.push_back(scene_.add(mesh, {.octree = octree_of_2007()}));
-  }
-  static SceneOptions options_of(const Replay& replay) {
-    SceneOptions options = with_method_of_2007({});
-    options.contacts = ContactKinds::none;
-    options.threads = 1;
-    if (replay.border) options.scene_octree.root = cube_around((*replay.border)[0], (*replay.border)[1]);
-    return options;
-  }
-  StepStats find(const Replay::Frame& frame) {
-    for (std::size_t i = 0; i < ids_.size(); ++i)
-      scene_.set_positions(ids_[i], frame.positions[i], frame.bounds[i]);
-    return scene_.detect().stats;
-  }
-
- private:
-  Scene scene_;
-  std::vector<ObjectId> ids_;
-};
-
 /// The pairs of triangles that intersect in each frame, decided exactly.
 std::vector<TrianglePairs> exact_pairs(const Replay& replay) {
   Scene scene({.contact_points = false});

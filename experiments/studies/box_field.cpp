@@ -1,9 +1,10 @@
 #include "studies/box_field.hpp"
 
 #include <algorithm>
-
 #include <cmath>
 #include <random>
+
+#include "supple/comparison.hpp"
 
 namespace supple::experiments {
 

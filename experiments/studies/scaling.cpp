@@ -13,6 +13,7 @@
 #include "studies/box_field.hpp"
 #include "studies/shape_pair.hpp"
 #include "supple/broad_phase.hpp"
+#include "supple/comparison.hpp"
 #include "supple/error.hpp"
 #include "supple/models.hpp"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "options/option_needs.hpp"
+#include "supple/comparison.hpp"
 #include "supple/options.hpp"
 #include "supple/simulation_descriptions.hpp"
 

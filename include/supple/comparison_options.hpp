@@ -10,7 +10,7 @@ namespace supple {
 // Options to repeat the paper's experiments and to compare methods. No program needs them to find contacts:
 // the defaults are the fastest. They are parts of `ObjectOptions` and `SceneOptions`.
 
-/// How the octree of an object is built. The contacts are the same for all methods.
+/// How the octree of an object is built; see `use_comparison_methods`. The contacts are the same for all.
 enum class ObjectOctreeBuild : std::uint8_t {
   /// Top-down. Distributes the triangles among the children so that leaves are about equally full. This takes
   /// the fewest leaves. The arity is eight; `Scene::add` throws `Error` for another one.

@@ -23,8 +23,8 @@ namespace supple {
 /// contacts are the same for all. Searches for continuous contacts and proximity use boxes for the nodes, and
 /// boxes or spheres for the objects.
 ///
-/// Oriented boxes and k-DOPs are tested where boxes overlap. They are tighter than boxes, and take more
-/// memory and more time to refit and to test.
+/// Volumes other than boxes need `use_comparison_methods`. Oriented boxes and k-DOPs are tested where boxes
+/// overlap. They are tighter than boxes, and take more memory and more time to refit and to test.
 enum class BoundingVolume : std::uint8_t {
   aabb,    ///< axis-aligned box
   sphere,  ///< fitted as `SphereFit` says
@@ -49,8 +49,8 @@ enum class BroadPhaseMethod : std::uint8_t {
   octree,
   /// A hierarchical grid that is rebuilt in each step with changes. Best when many objects change.
   grid,
-  sweep,  ///< sweep and prune along one axis
-  brute,  ///< every object against every other
+  sweep,  ///< sweep and prune along one axis; needs `use_comparison_methods`
+  brute,  ///< every object against every other; needs `use_comparison_methods`
 };
 
 /// Kinds of contacts, a set: `ContactKinds::intersection | ContactKinds::continuous`.
@@ -190,16 +190,6 @@ struct SceneOptions {
   std::uint32_t threads = 0;
   ComparisonOptions comparison{};
 };
-
-/// The options with the method of the paper's program of 2007: the octree of the scene as in Figure 2, with
-/// level 1 always there and 64 leaves at most (level-allowed = 2), the region test of the grown box, the
-/// descent of Figure 4, the lazy refit, and the colliding vertices of both sides as its output. Other options
-/// stay, with boxes instead of volumes that the paper does not have. Objects need `octree_of_2007`.
-/// `SimulationOptions::fused_refit` belongs to the method, too, and the root of the scene octree is the cube
-/// of the scene.
-SceneOptions with_method_of_2007(SceneOptions options);
-/// The paper's octree of an object: regular, down to single triangles.
-ObjectOctreeOptions octree_of_2007();
 
 /// The contacts that one call of `Scene::detect` finds, and limits of the call.
 struct DetectRequest {

@@ -158,7 +158,7 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
   explanation.number_a = cell_number(pair.a, object_a.options.octree.arity, at.node_a, at.child_a);
   explanation.number_b = cell_number(pair.b, object_b.options.octree.arity, at.node_b, at.child_b);
   const Vec3d &to_a = pair.a.translation, &to_b = pair.b.translation;
-  if (pair.a.spheres != nullptr) {
+  if (pair.a.volumes != nullptr && pair.a.volumes->replace_boxes()) {
     const BoundingSphere a = child_sphere(pair.a, at.node_a, at.child_a);
     const BoundingSphere b = child_sphere(pair.b, at.node_b, at.child_b);
     explanation.sphere_a = moved(a, to_a);
@@ -169,7 +169,7 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
     explanation.box_a = moved(a, to_a);
     explanation.box_b = moved(b, to_b);
     set_gap(explanation, translated(a, to_a), translated(b, to_b));
-    if (!pair.a.volumes.empty() && !(explanation.distance > 0)) {
+    if (pair.a.volumes != nullptr && !(explanation.distance > 0)) {
       explanation.slabs_a = child_slabs(pair.a, at.node_a, at.child_a);
       explanation.slabs_b = child_slabs(pair.b, at.node_b, at.child_b);
       set_gap(explanation);

@@ -7,8 +7,8 @@
 #include "core/error.hpp"
 #include "core/sort_once.hpp"
 #include "geometry/aabb.hpp"
-#include "geometry/polytope.hpp"
 #include "geometry/sphere.hpp"
+#include "inspect/polytope.hpp"
 #include "inspect/searched_volumes.hpp"
 #include "mesh/share_vertex.hpp"
 
@@ -28,7 +28,7 @@ class CellReader {
     cell.is_leaf = !node.is_inner(child);
     cell.triangle_count = node.size(child);
     cell.box = moved(child_box(view_, n, child), view_.translation);
-    if (view_.spheres != nullptr) cell.sphere = moved(child_sphere(view_, n, child), view_.translation);
+    cell.sphere = moved(child_sphere(view_, n, child), view_.translation);
     cell.slabs = child_slabs(view_, n, child);
     return cell;
   }
@@ -42,7 +42,7 @@ class CellReader {
     for (int child = 0; child < view_.nodes[0].child_count; ++child)
       extend(cell.box, child_box(view_, 0, child));
     cell.box = moved(cell.box, view_.translation);
-    if (view_.spheres != nullptr) cell.sphere = object_->sphere();
+    if (view_.volumes != nullptr) cell.sphere = object_->sphere();
     return cell;
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "inspect/polytope.hpp"
 #include "octree/build/query_cost.hpp"
 
 namespace supple {
@@ -33,6 +34,19 @@ OctreeStatistics octree_statistics(const ObjectOctree& octree) {
   return result;
 }
 
+double cost_of_volumes(const ObjectOctree& octree) {
+  const NodeVolumes& volumes = *octree.volumes();
+  const auto surface = [&](std::uint32_t n, int child, const Aabb& box) -> double {
+    const BoundingSphere sphere = volumes.sphere(n, child);
+    if (volumes.replace_boxes()) return sphere.empty() ? 0 : double{sphere.radius} * sphere.radius;
+    return box.empty() ? 0 : Polytope(volumes.slabs(n, child, box, {})).surface();
+  };
+  if (octree.nodes().empty()) return 0;
+  return query_cost(
+      octree.nodes(), surface(volumes.object(), 0, enclosing_box(octree.boxes()[0])),
+      [&](std::uint32_t n, int child) { return surface(n, child, child_box(octree.boxes()[n], child)); });
+}
+
 OctreeStatistics octree_statistics(const WorldObject& object) {
   const ObjectOctree& octree = object.octree();
   OctreeStatistics result = octree_statistics(octree);
@@ -42,10 +56,7 @@ OctreeStatistics octree_statistics(const WorldObject& object) {
   }
   result.cost = object.current_query_cost();
   result.degradation = object.rebuild_policy().degradation(result.cost);
-  if (octree.spheres() != nullptr && object.is_resting_current())
-    result.cost = query_cost(octree.nodes(), octree.spheres(), octree.sphere());
-  if (!octree.volumes().empty() && object.is_resting_current())
-    result.cost = query_cost(octree.nodes(), octree.boxes(), octree.volumes());
+  if (octree.volumes() != nullptr && object.is_resting_current()) result.cost = cost_of_volumes(octree);
   result.rebuilds = object.rebuilds();
   return result;
 }

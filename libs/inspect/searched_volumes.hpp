@@ -29,19 +29,20 @@ inline Aabb child_box(const OctreeView& view, std::uint32_t node, int child) {
   const bool is_moving = view.moving.start != nullptr;
   return is_moving ? unclamped(child_box(view.moving.end[node], child)) : child_box(view.boxes[node], child);
 }
+/// Without the view's translation; empty for other volumes.
 inline BoundingSphere child_sphere(const OctreeView& view, std::uint32_t node, int child) {
-  return child_sphere(view.spheres[node], child);
+  return view.volumes == nullptr ? BoundingSphere{} : view.volumes->sphere(node, child);
 }
 
 /// The oriented box or k-DOP of a child, and of the whole object, where the object is now; empty for other
 /// volumes.
 inline std::vector<Slab> child_slabs(const OctreeView& view, std::uint32_t node, int child) {
-  if (view.volumes.empty()) return {};
-  return child_slabs(view.volumes, child_box(view.boxes[node], child), node, child, view.translation);
+  if (view.volumes == nullptr) return {};
+  return view.volumes->slabs(node, child, child_box(view.boxes[node], child), view.translation);
 }
 inline std::vector<Slab> object_slabs(const OctreeView& view) {
-  if (view.volumes.empty()) return {};
-  return child_slabs(view.volumes, enclosing_box(view.boxes[0]), view.volumes.object, 0, view.translation);
+  if (view.volumes == nullptr) return {};
+  return view.volumes->slabs(view.volumes->object(), 0, enclosing_box(view.boxes[0]), view.translation);
 }
 
 /// Whether the octree is a single leaf. Its only cell is then the root.

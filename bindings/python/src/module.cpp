@@ -3,6 +3,7 @@
 #include "options.hpp"
 #include "scene.hpp"
 #include "supple/broad_phase.hpp"
+#include "supple/comparison.hpp"
 #include "supple/simulation.hpp"
 #include "supple/simulation_descriptions.hpp"
 #include "supple/version.hpp"
@@ -12,6 +13,7 @@ NB_MODULE(_core, module) {
   namespace nb = nanobind;
   // Objects and scenes refer to each other, and tracebacks keep them until the interpreter ends.
   nb::set_leak_warnings(false);
+  supple::use_comparison_methods();
   module.attr("version") = SUPPLE_VERSION;
   const nb::exception<supple::Error> error(module, "Error", PyExc_ValueError);
   nb::exception<supple::MotionError>(module, "MotionError", error);

@@ -4,7 +4,7 @@ import enum
 
 
 class ObjectOctreeBuild(enum.IntEnum):
-    'How the octree of an object is built. The contacts are the same for all methods.'
+    'How the octree of an object is built; see `use_comparison_methods`. The contacts are the same for all.'
 
     balanced = 0
     'Top-down. Distributes the triangles among the children so that leaves are about equally full. This takes the fewest leaves. The arity is eight; `Scene.add` throws `Error` for another one.'
@@ -94,7 +94,7 @@ class ManifoldSource(enum.IntEnum):
 
 
 class BoundingVolume(enum.IntEnum):
-    "Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. The contacts are the same for all. Searches for continuous contacts and proximity use boxes for the nodes, and boxes or spheres for the objects.\n\nOriented boxes and k-DOPs are tested where boxes overlap. They are tighter than boxes, and take more memory and more time to refit and to test."
+    "Shape that encloses the nodes of an object's octree, and the object itself in the broad phase. The contacts are the same for all. Searches for continuous contacts and proximity use boxes for the nodes, and boxes or spheres for the objects.\n\nVolumes other than boxes need `use_comparison_methods`. Oriented boxes and k-DOPs are tested where boxes overlap. They are tighter than boxes, and take more memory and more time to refit and to test."
 
     aabb = 0
     'axis-aligned box'
@@ -118,9 +118,9 @@ class BroadPhaseMethod(enum.IntEnum):
     grid = 2
     'A hierarchical grid that is rebuilt in each step with changes. Best when many objects change.'
     sweep = 3
-    'sweep and prune along one axis'
+    'sweep and prune along one axis; needs `use_comparison_methods`'
     brute = 4
-    'every object against every other'
+    'every object against every other; needs `use_comparison_methods`'
 
 
 class ContactKinds(enum.IntFlag):
@@ -775,6 +775,8 @@ CONTRACTS = {
         'The unit normal by the right-hand rule; zero when the triangle has no area or a corner is not finite. Rounded.',
     'usable_cores':
         'The number of cores that this process may use, at least 1.',
+    'use_comparison_methods':
+        'Lets this process use the methods that only serve comparisons with the defaults: `SceneOptions.bounding_volume` other than `aabb`, `ObjectOctreeOptions.build` other than `balanced`, and `BroadPhaseMethod.sweep` and `brute`. Without this call, `Scene`, `Scene.add` and `BroadPhase` throw `Error` for these options. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
     'valid_utf8':
         'Replaces every byte that is not part of valid UTF-8 by U+FFFD, because names of files, and names in files, may be any bytes.',
     'value_of_set':

@@ -5,8 +5,8 @@
 #include "broad_phase/automatic_search.hpp"
 #include "broad_phase/grid/grid_search.hpp"
 #include "broad_phase/octree/octree_search.hpp"
-#include "broad_phase/sweep/sweep_search.hpp"
 #include "core/error.hpp"
+#include "octree/comparison_methods.hpp"
 #include "supple/option_descriptions.hpp"
 
 namespace supple {
@@ -37,11 +37,9 @@ std::unique_ptr<PairSearch> make_search(BroadPhaseMethod method, BoundingVolume 
       refuse(options, "grid");
       return std::make_unique<GridSearch>();
     case BroadPhaseMethod::sweep:
-      refuse(options, "sweep");
-      return std::make_unique<SweepSearch>(true);
     case BroadPhaseMethod::brute:
-      refuse(options, "brute");
-      return std::make_unique<SweepSearch>(false);
+      refuse(options, word_of(method));
+      return comparison_methods(std::string("the broad phase ") + word_of(method)).pair_search(method);
   }
   fail("broad phase: method " + std::to_string(static_cast<int>(method)) +
        " is unknown; use automatic, octree, grid, sweep or brute");

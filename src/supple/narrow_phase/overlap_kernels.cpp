@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "core/packed_lanes-inl.hpp"
-#include "geometry/sphere.hpp"
 #include "mesh/share_vertex.hpp"
 #include "octree/volumes/triangle_boxes-inl.hpp"
 
@@ -428,22 +427,6 @@ std::uint64_t find_triangle_box_pairs(std::span<const LeafPair> leaf_pairs, cons
                                       bool same_object, LeafBoxCache& cache, TrianglePairList& pairs) {
   return HWY_DYNAMIC_DISPATCH(TriangleBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, placement,
                                                 same_object, cache, pairs);
-}
-
-void overlap_masks(std::span<const NodePair> pairs, const ChildSpheres* a, const ChildSpheres* b,
-                   const RelativePlacement& placement, std::uint64_t* masks) {
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    masks[k] = 0;
-    for (std::uint32_t rest = pairs[k].children_a; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      const BoundingSphere sphere = child_sphere(a[pairs[k].a], i);
-      for (int j = 0; j < node_width; ++j) {
-        const BoundingSphere other = child_sphere(b[pairs[k].b], j);
-        const bool may_touch = overlap(sphere, other, placement.offset, placement.slop);
-        masks[k] |= std::uint64_t{may_touch} << (node_width * i + j);
-      }
-    }
-  }
 }
 
 }  // namespace supple

@@ -6,34 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "octree/node_pair.hpp"
 #include "octree/octree_node.hpp"
 #include "octree/volumes/box_kernels.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
-
-/// Two nodes to test: the children of a in `children_a` against the children of b in `children_b`.
-struct NodePair {
-  std::uint32_t a = 0, b = 0;
-  std::uint8_t children_a = 0xff, children_b = 0xff;
-};
-
-/// The translation of object b relative to object a. The volumes of b move by `offset` and grow by `slop`,
-/// which covers all rounding errors. Zero for objects that are not translated.
-struct RelativePlacement {
-  Vec3f offset;
-  float slop = 0;
-
-  bool is_identity() const { return offset == Vec3f{} && slop == 0; }
-};
-/// The box of an object b, moved and grown.
-inline Aabb placed(Aabb box, const RelativePlacement& placement) {
-  for (int axis = 0; axis < 3; ++axis) {
-    box.min[axis] += placement.offset[axis] - placement.slop;
-    box.max[axis] += placement.offset[axis] + placement.slop;
-  }
-  return box;
-}
 
 /// Triangles of two leaves whose volumes overlap, in octree order: [begin_a, end_a) against [begin_b, end_b).
 /// A leaf against itself has equal ranges. `leaf_a` and `leaf_b` are eight times the node plus the child.
@@ -95,8 +73,6 @@ class TrianglePairList {
 /// children outside `children_a` are 0; bits of missing children of b are unspecified. Never misses an
 /// overlap.
 void overlap_masks(std::span<const NodePair> pairs, const ChildBoxes* a, const ChildBoxes* b,
-                   const RelativePlacement& placement, std::uint64_t* masks);
-void overlap_masks(std::span<const NodePair> pairs, const ChildSpheres* a, const ChildSpheres* b,
                    const RelativePlacement& placement, std::uint64_t* masks);
 
 /// The data of an object for the leaf tests: its triangles, and the boxes and vertices of its leaves.

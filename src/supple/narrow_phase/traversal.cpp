@@ -7,8 +7,7 @@
 #include <memory>
 
 #include "core/float_rounding.hpp"
-#include "geometry/sphere.hpp"
-#include "narrow_phase/volume_kernels.hpp"
+#include "geometry/aabb.hpp"
 
 namespace supple {
 namespace {
@@ -104,12 +103,19 @@ std::uint64_t masks_of_near_children(const ObjectPairView& pair, const NodePair&
   return mask;
 }
 
-/// Whether a child of object a overlaps a child of object b. The comparisons are those of `overlap_masks`.
+std::uint8_t child_bit(int child) {
+  return static_cast<std::uint8_t>(1u << child);
+}
+
+/// Whether a child of object a overlaps a child of object b, by boxes or spheres. The comparisons are those
+/// of `test_children`.
 bool children_overlap(const ObjectPairView& pair, std::uint32_t node_a, int child_a, std::uint32_t node_b,
                       int child_b) {
-  if (pair.a.spheres != nullptr) {
-    return overlap(child_sphere(pair.a.spheres[node_a], child_a),
-                   child_sphere(pair.b.spheres[node_b], child_b), pair.placement.offset, pair.placement.slop);
+  if (pair.a.volumes != nullptr) {
+    const NodePair nodes{node_a, node_b, child_bit(child_a), child_bit(child_b)};
+    std::uint64_t mask = ~std::uint64_t{0};
+    pair.a.volumes->clear_apart({&nodes, 1}, *pair.b.volumes, pair.placement, &mask);
+    return (mask >> (node_width * child_a + child_b) & 1) != 0;
   }
   return overlap(child_box(pair.a.boxes[node_a], child_a),
                  placed(child_box(pair.b.boxes[node_b], child_b), pair.placement));
@@ -120,10 +126,7 @@ bool child_overlaps_node(const ObjectPairView& pair, std::uint32_t node_a, int c
                          std::uint32_t node_b) {
   const OctreeNode& node = pair.b.nodes[node_b];
   if (node_b != 0) return children_overlap(pair, node_a, child_a, node.parent, node.index_in_parent);
-  if (pair.a.spheres != nullptr) {
-    return overlap(child_sphere(pair.a.spheres[node_a], child_a), pair.b.sphere, pair.placement.offset,
-                   pair.placement.slop);
-  }
+  if (pair.a.volumes != nullptr) return children_overlap(pair, node_a, child_a, pair.b.volumes->object(), 0);
   return overlap(child_box(pair.a.boxes[node_a], child_a), placed(pair.b.box, pair.placement));
 }
 
@@ -167,11 +170,14 @@ std::uint64_t test_children(const ObjectPairView& pair, std::span<const NodePair
       masks[k] = masks_of_near_children(pair, node_pairs[k]);
   } else if (pair.is_moving()) {
     moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.part_of_step(), masks);
-  } else if (pair.a.spheres != nullptr) {
-    overlap_masks(node_pairs, pair.a.spheres, pair.b.spheres, pair.placement, masks);
   } else {
-    overlap_masks(node_pairs, pair.a.boxes, pair.b.boxes, pair.placement, masks);
-    separate_volumes(node_pairs, pair.a.volumes, pair.b.volumes, pair.placement, masks);
+    const NodeVolumes* const volumes = pair.a.volumes;
+    if (volumes != nullptr && volumes->replace_boxes()) {
+      std::fill_n(masks, node_pairs.size(), ~std::uint64_t{0});
+    } else {
+      overlap_masks(node_pairs, pair.a.boxes, pair.b.boxes, pair.placement, masks);
+    }
+    if (volumes != nullptr) volumes->clear_apart(node_pairs, *pair.b.volumes, pair.placement, masks);
   }
   return tests;
 }
@@ -209,10 +215,6 @@ std::uint32_t leaf_number(std::uint32_t node, int child) {
   return node * node_width + static_cast<std::uint32_t>(child);
 }
 
-std::uint8_t child_bit(int child) {
-  return static_cast<std::uint8_t>(1u << child);
-}
-
 /// Largest absolute coordinate of the box; 0 when it is empty.
 double greatest_coordinate(const Aabb& box) {
   if (box.empty()) return 0;
@@ -247,12 +249,10 @@ OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
   view.nodes = octree.nodes();
   view.cell_numbers = octree.cell_numbers();
   view.boxes = octree.boxes();
-  view.spheres = octree.spheres();
   view.volumes = octree.volumes();
   view.leaf_vertices = octree.leaf_vertices();
   view.arrays = arrays_of(octree.triangles(), vertices, inert);
   view.box = octree.box();
-  view.sphere = octree.sphere();
   view.translation = translation;
   return view;
 }
@@ -304,10 +304,10 @@ ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) 
 }
 
 bool object_volumes_apart(const ObjectPairView& pair) {
-  const NodePair objects{pair.a.volumes.object, pair.b.volumes.object};
+  if (pair.a.nodes.empty() || pair.b.nodes.empty()) return false;
+  const NodePair objects{pair.a.volumes->object(), pair.b.volumes->object()};
   std::uint64_t mask = 1;
-  if (!pair.a.volumes.empty() && !pair.b.volumes.empty())
-    separate_volumes({&objects, 1}, pair.a.volumes, pair.b.volumes, pair.placement, &mask);
+  pair.a.volumes->clear_apart({&objects, 1}, *pair.b.volumes, pair.placement, &mask);
   return mask == 0;
 }
 

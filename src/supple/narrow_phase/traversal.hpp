@@ -23,12 +23,10 @@ struct OctreeView {
   std::span<const OctreeNode> nodes;
   std::span<const std::uint64_t> cell_numbers;  ///< `OctreeTopology::numbers`
   const ChildBoxes* boxes = nullptr;
-  const ChildSpheres* spheres = nullptr;  ///< null: the boxes are the volumes
-  NodeVolumesView volumes;                ///< tested where boxes overlap, if it is not empty
+  const NodeVolumes* volumes = nullptr;  ///< null: the boxes are the volumes
   TriangleArrays arrays;
   LeafVertexArrays leaf_vertices;
-  Aabb box;  ///< of all positions
-  BoundingSphere sphere;
+  Aabb box;                               ///< of all positions
   Descent descent = Descent::both_sides;  ///< of objects at rest
   Vec3d translation;                      ///< added to each position
   /// Boxes of the ways of the vertices in each child, for `ObjectPairView::kept_share`; null at rest.
@@ -83,7 +81,7 @@ ObjectPairView self_pair_of(const OctreeView& object);
 ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation);
 ObjectPairView moving_self_pair_of(const OctreeView& object, double separation);
 
-/// Whether the oriented boxes or k-DOPs of the two objects are apart; false when they have neither.
+/// Whether the `NodeVolumes` of two objects that have some are apart.
 bool object_volumes_apart(const ObjectPairView& pair);
 
 struct TraversalStats {

@@ -11,9 +11,10 @@
 #include "geometry/point_bounds.hpp"
 #include "geometry/vector.hpp"
 #include "octree/build/balanced_build.hpp"
-#include "octree/build/bottom_up_build.hpp"
-#include "octree/build/regular_build.hpp"
+#include "octree/comparison_methods.hpp"
+#include "octree/octree_topology.hpp"
 #include "octree/volumes/box_kernels.hpp"
+#include "supple/option_descriptions.hpp"
 
 namespace supple {
 namespace {
@@ -44,14 +45,10 @@ std::vector<Vec3d> box_centers(const PositionsView& positions, std::span<const T
 OctreeTopology build_topology(const PositionsView& positions, std::span<const Triangle> triangles,
                               const ObjectOctreeOptions& options, const Parallel& parallel) {
   const std::vector<Vec3d> centers = box_centers(positions, triangles, parallel);
-  switch (options.build) {
-    case ObjectOctreeBuild::regular:
-      return build_regular_octree(centers, options);
-    case ObjectOctreeBuild::bottom_up:
-      return build_bottom_up_octree(positions, triangles, centers, options);
-    default:
-      return build_balanced_octree(centers, triangles, options, parallel);
-  }
+  if (options.build == ObjectOctreeBuild::balanced)
+    return build_balanced_octree(centers, triangles, options, parallel);
+  return comparison_methods(std::string("the octree build ") + word_of(options.build))
+      .octree(positions, triangles, centers, options);
 }
 
 /// The bounds of finite points, rounded outward.
@@ -61,13 +58,6 @@ Aabb box_of(const PointBounds& bounds) {
   extend(box, bounds.low);
   extend(box, bounds.high);
   return box;
-}
-
-void set_child(ChildSpheres& spheres, int child, const BoundingSphere& sphere) {
-  spheres.x[child] = sphere.center.x;
-  spheres.y[child] = sphere.center.y;
-  spheres.z[child] = sphere.center.z;
-  spheres.radius[child] = sphere.radius;
 }
 
 }  // namespace
@@ -80,8 +70,7 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
                            SphereFit sphere_fit, const Parallel& parallel)
-    : volumes_(bounding_volume, 0),
-      vertex_count_(rest_positions.size()),
+    : vertex_count_(rest_positions.size()),
       options_(options),
       bounding_volume_(bounding_volume),
       sphere_fit_(sphere_fit) {
@@ -92,8 +81,10 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   cell_numbers_ = std::move(topology.numbers);
   triangle_ids_ = std::move(topology.order);
   boxes_.resize(nodes_.size());
-  if (bounding_volume == BoundingVolume::sphere) spheres_.resize(nodes_.size());
-  volumes_ = NodeVolumes(bounding_volume, nodes_.size());
+  if (bounding_volume != BoundingVolume::aabb) {
+    volumes_ = comparison_methods(std::string("the bounding volume ") + word_of(bounding_volume))
+                   .node_volumes(bounding_volume, sphere_fit, nodes_.size());
+  }
   triangles_.resize(triangles.size());
   triangle_order_.resize(triangles.size());
   parallel.for_ranges(triangles.size(), triangles_of_a_task,
@@ -181,17 +172,13 @@ bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint
       !inert.empty() || std::all_of(unused_vertices_.begin(), unused_vertices_.end(),
                                     [&](std::uint32_t vertex) { return is_finite(vertices[vertex]); });
   const TriangleArrays arrays = arrays_of(triangles_, vertices, inert);
-  const SurfacePart surface{triangles_, inert, vertices};
   for_nodes_bottom_up(parallel, 64, [&](std::uint32_t begin, std::uint32_t end) {
     if (!all_finite) return;
     if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), begin, end)) all_finite = false;
-    if (all_finite && !spheres_.empty()) refit_spheres(begin, end, sphere_fitter(vertices, inert));
-    if (all_finite) volumes_.refit(nodes_, boxes_.data(), surface, leaf_vertices(), begin, end);
+    if (all_finite && volumes_) volumes_->refit(refitted(vertices, inert), begin, end);
   });
-  if (all_finite && !nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface, leaf_vertices());
   box_ = nodes_.empty() ? Aabb{} : enclosing_box(boxes_[0]);
-  sphere_ = BoundingSphere{};
-  if (all_finite && !spheres_.empty()) sphere_ = sphere_fitter(vertices, inert).sphere_of_object(box());
+  if (all_finite && volumes_ && !nodes_.empty()) volumes_->refit_object(refitted(vertices, inert), box_);
   return all_finite;
 }
 
@@ -209,8 +196,6 @@ std::optional<std::size_t> ObjectOctree::refit_moved(const VertexBuffer& vertice
   std::sort(stale_nodes_.begin(), stale_nodes_.end());
   for (const std::uint32_t node : stale_nodes_) is_stale_[node] = 0;
   const TriangleArrays arrays = arrays_of(triangles_, vertices, {});
-  const SurfacePart surface{triangles_, {}, vertices};
-  const SphereFitter fitter = sphere_fitter(vertices, {});
   std::atomic<bool> all_finite = true;
   std::size_t triangles = 0;
   for (std::size_t end = stale_nodes_.size(), begin = end; end > 0; end = begin) {
@@ -220,8 +205,7 @@ std::optional<std::size_t> ObjectOctree::refit_moved(const VertexBuffer& vertice
       for (std::size_t i = begin + first; i < begin + last; ++i) {
         const std::uint32_t n = stale_nodes_[i];
         if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), n, n + 1)) all_finite = false;
-        if (all_finite && !spheres_.empty()) refit_spheres(n, n + 1, fitter);
-        if (all_finite) volumes_.refit(nodes_, boxes_.data(), surface, leaf_vertices(), n, n + 1);
+        if (all_finite && volumes_) volumes_->refit(refitted(vertices, {}), n, n + 1);
       }
     });
     for (std::size_t i = begin; i < end; ++i) {
@@ -232,8 +216,7 @@ std::optional<std::size_t> ObjectOctree::refit_moved(const VertexBuffer& vertice
   }
   if (!all_finite) return std::nullopt;
   if (!stale_nodes_.empty()) box_ = enclosing_box(boxes_[0]);
-  if (!stale_nodes_.empty() && !spheres_.empty()) sphere_ = fitter.sphere_of_object(box());
-  if (!stale_nodes_.empty()) volumes_.refit_object(nodes_, boxes_.data(), surface, leaf_vertices());
+  if (!stale_nodes_.empty() && volumes_) volumes_->refit_object(refitted(vertices, {}), box_);
   return triangles;
 }
 
@@ -280,7 +263,7 @@ bool ObjectOctree::refit_object(const VertexBuffer& vertices, const std::optiona
     for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) add(vertex);
   }
   box_ = box && unused_vertices_.empty() ? *box : box_of(bounds);
-  if (all_finite && !spheres_.empty()) sphere_ = sphere_fitter(vertices, {}, false).sphere_of_object(box_);
+  if (all_finite && volumes_) volumes_->refit_object(refitted(vertices, {}, false), box_);
   return all_finite;
 }
 
@@ -294,23 +277,8 @@ std::size_t ObjectOctree::refit_children(std::uint32_t n, const VertexBuffer& ve
     }
     set_child_box(boxes_[n], child, box_of(bounds));
   }
-  if (!spheres_.empty()) refit_spheres(n, n + 1, sphere_fitter(vertices, {}, false));
+  if (volumes_) volumes_->refit(refitted(vertices, {}, false), n, n + 1);
   return node.size();
-}
-
-SphereFitter ObjectOctree::sphere_fitter(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
-                                         bool are_nodes_current) const {
-  return {sphere_fit_, nodes_,   spheres_.data(), leaf_vertices(),
-          triangles_,  vertices, inert,           are_nodes_current};
-}
-
-void ObjectOctree::refit_spheres(std::uint32_t node_begin, std::uint32_t node_end,
-                                 const SphereFitter& fitter) {
-  // Not `refit_bottom_up`: a sphere is fitted to the vertices below, because the union of spheres is larger.
-  for (std::uint32_t n = node_begin; n < node_end; ++n) {
-    for (int child = 0; child < node_width; ++child)
-      set_child(spheres_[n], child, fitter.sphere_of_child(n, child, child_box(boxes_[n], child)));
-  }
 }
 
 }  // namespace supple

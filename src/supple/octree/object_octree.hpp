@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +13,6 @@
 #include "octree/vertex_buffer.hpp"
 #include "octree/volumes/box_kernels.hpp"
 #include "octree/volumes/node_volumes.hpp"
-#include "octree/volumes/sphere_fit.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/types.hpp"
@@ -26,11 +26,10 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 /// Octree over the triangles of one object, built from the rest pose. `refit` updates its volumes when the
 /// object deforms.
 ///
-/// It is built top-down, balanced (`octree/balanced_build.hpp`) or regular as in the paper
-/// (`octree/regular_build.hpp`), or bottom-up (`octree/bottom_up_build.hpp`). In a regular octree, each
-/// triangle is in the octant that contains the centre of its box. A node whose triangles are all in one
-/// octant shrinks to that octant, so that a single vertex far away costs one level. With arity 4 or 2, nodes
-/// have quarters or halves instead of octants, and the other children are missing.
+/// It is built balanced (`octree/build/balanced_build.hpp`), or regular or bottom-up by supple::comparison.
+/// In a regular octree, each triangle is in the octant that contains the centre of its box. A node whose
+/// triangles are all in one octant shrinks to that octant, so that a single vertex far away costs one level.
+/// With arity 4 or 2, nodes have quarters or halves instead of octants, and the other children are missing.
 ///
 /// Each node below the root has at least two children. Nodes are stored level by level. Triangles are
 /// renumbered in octree order. Leaves are large: testing dozens of triangles with vector instructions costs
@@ -49,11 +48,8 @@ class ObjectOctree {
   /// `OctreeTopology::numbers`.
   std::span<const std::uint64_t> cell_numbers() const { return cell_numbers_; }
   const ChildBoxes* boxes() const { return boxes_.data(); }
-  /// Null unless the bounding volume is the sphere.
-  const ChildSpheres* spheres() const { return spheres_.empty() ? nullptr : spheres_.data(); }
-
-  /// Empty unless the bounding volume is the oriented box or a k-DOP.
-  NodeVolumesView volumes() const { return volumes_.view(); }
+  /// Null when the bounding volume is the box.
+  const NodeVolumes* volumes() const { return volumes_.get(); }
 
   LeafVertexArrays leaf_vertices() const {
     return {first_leaf_vertex_.data(), leaf_vertices_.data(), leaf_corners_.data(), leaf_corners_.size() / 3};
@@ -113,7 +109,9 @@ class ObjectOctree {
 
   /// Volumes of the whole object at the last refit; empty when it has no finite triangle.
   const Aabb& box() const { return box_; }
-  const BoundingSphere& sphere() const { return sphere_; }
+  BoundingSphere sphere() const {
+    return volumes_ ? volumes_->sphere(volumes_->object(), 0) : BoundingSphere{};
+  }
 
   /// The empty string when every invariant holds and every volume encloses its triangles; otherwise what is
   /// wrong. Spheres fitted to boxes need not enclose and are not checked.
@@ -125,14 +123,14 @@ class ObjectOctree {
   void list_leaf_vertices(const Parallel& parallel);
   void list_nodes_of_vertices();
   void mark_with_ancestors(std::uint32_t node);
-  SphereFitter sphere_fitter(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
-                             bool are_nodes_current = true) const;
-  void refit_spheres(std::uint32_t node_begin, std::uint32_t node_end, const SphereFitter& fitter);
+  RefittedOctree refitted(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
+                          bool are_nodes_current = true) const {
+    return {nodes_, boxes_.data(), triangles_, leaf_vertices(), vertices, inert, are_nodes_current};
+  }
 
   std::vector<OctreeNode> nodes_;
   std::vector<ChildBoxes> boxes_;
-  std::vector<ChildSpheres> spheres_;
-  NodeVolumes volumes_;
+  std::unique_ptr<NodeVolumes> volumes_;
   std::vector<std::uint32_t> level_begin_;   // `OctreeTopology::level_begin`
   std::vector<std::uint64_t> cell_numbers_;  // `OctreeTopology::numbers`
   std::vector<Triangle> triangles_;
@@ -150,7 +148,6 @@ class ObjectOctree {
   BoundingVolume bounding_volume_;
   SphereFit sphere_fit_;
   Aabb box_;
-  BoundingSphere sphere_;
 };
 
 }  // namespace supple

@@ -47,16 +47,6 @@ inline Aabb enclosing_box(const ChildBoxes& boxes) {
   return box;
 }
 
-/// The spheres of the children of a node. Missing children, and children without a finite triangle, have a
-/// negative radius.
-struct alignas(64) ChildSpheres {
-  float x[node_width], y[node_width], z[node_width], radius[node_width];
-};
-
-inline BoundingSphere child_sphere(const ChildSpheres& spheres, int child) {
-  return {{spheres.x[child], spheres.y[child], spheres.z[child]}, spheres.radius[child]};
-}
-
 /// A node with up to eight children, without its volumes. Child i has the triangles [first_triangle[i],
 /// first_triangle[i + 1]) in the octree's order. Nodes of inner children are consecutive, in the order of
 /// the children.

@@ -74,7 +74,10 @@ class Validation {
     const Aabb box = child_box(octree_.boxes()[n], child);
     constexpr double inf = std::numeric_limits<double>::infinity();
     Vec3d lower{inf, inf, inf}, upper{-inf, -inf, -inf};
-    const std::vector<Slab> slabs = child_slabs(octree_.volumes(), box, n, child, {});
+    const NodeVolumes* const volumes = octree_.volumes();
+    const std::vector<Slab> slabs =
+        volumes != nullptr ? volumes->slabs(n, child, box, {}) : std::vector<Slab>();
+    const BoundingSphere sphere = volumes != nullptr ? volumes->sphere(n, child) : BoundingSphere{};
     for (std::uint32_t t = begin; t < end; ++t) {
       if (!inert_.empty() && inert_[t] != 0) continue;
       for (const std::uint32_t vertex : octree_.triangles()[t]) {
@@ -84,7 +87,7 @@ class Validation {
           upper[axis] = std::max(upper[axis], p[axis]);
           if (!(box.min[axis] <= p[axis] && p[axis] <= box.max[axis])) return "box does not enclose a vertex";
         }
-        if (check_spheres_ && !in_sphere(n, child, p)) return "sphere does not enclose a vertex";
+        if (check_spheres_ && !in_sphere(sphere, p)) return "sphere does not enclose a vertex";
         if (!std::all_of(slabs.begin(), slabs.end(), [&](const Slab& slab) { return in_slab(slab, p); }))
           return "oriented box or k-DOP does not enclose a vertex";
       }
@@ -99,11 +102,9 @@ class Validation {
     return "";
   }
 
-  bool in_sphere(std::uint32_t n, int child, Vec3d p) const {
-    const ChildSpheres& spheres = octree_.spheres()[n];
-    const double distance =
-        scaled_norm({p.x - spheres.x[child], p.y - spheres.y[child], p.z - spheres.z[child]});
-    return distance <= spheres.radius[child] * (1 + 0x1p-40) || std::isinf(spheres.radius[child]);
+  static bool in_sphere(const BoundingSphere& sphere, Vec3d p) {
+    const double distance = scaled_norm(p - in_double(sphere.center));
+    return distance <= sphere.radius * (1 + 0x1p-40) || std::isinf(sphere.radius);
   }
 
   static bool in_slab(const Slab& slab, Vec3d p) {
@@ -123,14 +124,13 @@ class Validation {
 }  // namespace
 
 std::string ObjectOctree::validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const {
-  const bool enclosing_spheres = spheres() != nullptr && sphere_fit_ != SphereFit::box;
+  const bool enclosing_spheres = bounding_volume_ == BoundingVolume::sphere && sphere_fit_ != SphereFit::box;
   return Validation(*this, vertices, inert, enclosing_spheres, options_.arity).run();
 }
 
 std::size_t ObjectOctree::bytes() const {
   return nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(ChildBoxes) +
-         spheres_.capacity() * sizeof(ChildSpheres) + volumes_.bytes() +
-         triangles_.capacity() * sizeof(Triangle) +
+         (volumes_ ? volumes_->bytes() : 0) + triangles_.capacity() * sizeof(Triangle) +
          (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
           first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity() +
           first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity()) *

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "octree/comparison_methods.hpp"
 #include "supple/option_descriptions.hpp"
 
 namespace supple {
@@ -16,9 +17,9 @@ std::string described(ObjectId id) {
 
 SceneOptions checked(SceneOptions options) {
   check(options);
-  const bool has_other_volumes =
-      options.bounding_volume != BoundingVolume::aabb && options.bounding_volume != BoundingVolume::sphere;
-  if (has_other_volumes &&
+  if (options.bounding_volume != BoundingVolume::aabb)
+    comparison_methods(std::string("the bounding volume ") + word_of(options.bounding_volume));
+  if (is_tested_after_boxes(options.bounding_volume) &&
       (options.comparison.lazy_refit || options.comparison.descent != Descent::both_sides))
     fail(
         "SceneOptions: lazy_refit and the descent one_side_first need boxes or spheres; set bounding_volume "

@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "supple/comparison.hpp"
 #include "supple/inspection.hpp"
 #include "supple/mesh_file.hpp"
 #include "supple/recording.hpp"
@@ -13,7 +14,8 @@ int main() {
   const supple::Recording recording("consumer.h5");
 
   supple::save_mesh({"", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, "triangle.obj");
-  supple::Scene scene;
+  supple::use_comparison_methods();
+  supple::Scene scene({.bounding_volume = supple::BoundingVolume::obb});
   scene.add(supple::load_mesh("triangle.obj"));
   scene.add(supple::load_mesh("triangle.obj"));
   scene.detect();

@@ -105,7 +105,7 @@ TrianglePoints points_of(const Object& object, std::uint32_t triangle) {
 void expect_candidates(const Object& a, const Object& b, bool same_object, double slack) {
   const ObjectPairView pair = same_object ? self_pair_of(a.view()) : pair_of(a.view(), b.view());
   PairSet must = overlapping_boxes(a, b, same_object, 0);
-  if (a.octree.spheres() != nullptr || !a.octree.volumes().empty())
+  if (a.octree.volumes() != nullptr)
     std::erase_if(must, [&](const auto& found) {
       return !triangles_intersect_by_axes(points_of(a, found.first), points_of(b, found.second));
     });

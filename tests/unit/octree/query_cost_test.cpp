@@ -71,7 +71,7 @@ TEST(QueryCost, OfSpheresIsTheSumOfTheirSurfaces) {
       {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {7, 0, 0}, {6, 1, 0}, {5, 0, 0}, {6, -1, 0}},
       {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
   const ObjectOctree octree = octree_of_single_triangles(mesh, BoundingVolume::sphere);
-  EXPECT_NEAR(query_cost(octree.nodes(), octree.spheres(), octree.sphere()), 4 * 1.125 * 1.25 / 16, 1e-6);
+  EXPECT_NEAR(cost_of_volumes(octree), 4 * 1.125 * 1.25 / 16, 1e-6);
 }
 
 TEST(QueryCost, DoesNotDependOnPlaceAndScale) {

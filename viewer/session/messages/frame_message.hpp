@@ -17,8 +17,31 @@
 #include "sources/paper_vertices.hpp"
 #include "sources/source.hpp"
 #include "supple/inspection.hpp"
+#include "supple/result_descriptions.hpp"
 
 namespace supple::viewer {
+
+// Each frame contains `motion_seconds` and then the members of `StepStats` in their order.
+inline constexpr std::size_t statistic_count = count_leaves<StepStats>();
+
+/// Calls `function(name, value)` for each member. The value of an enumeration is its number.
+template <class Function>
+void for_each_statistic(const StepStats& stats, Function function) {
+  for_each_leaf(
+      [&](const auto& field, const auto& value) { function(field.key, static_cast<double>(value)); }, stats);
+}
+
+/// Eight numbers of a section.
+using Row = std::array<float, 8>;
+
+inline Row row_of(const std::array<float, 3>& first, float w, const std::array<float, 3>& second,
+                  float last) {
+  return {first[0], first[1], first[2], w, second[0], second[1], second[2], last};
+}
+
+inline std::array<float, 3> floats(const Vec3d& v) {
+  return Center{}(v);
+}
 
 /// The input of one frame message.
 struct FrameView {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "messages/described_json.hpp"
+#include "messages/frame_message.hpp"
 #include "messages/long_steps.hpp"
 #include "messages/mesh_warnings.hpp"
-#include "messages/statistics.hpp"
 #include "pins/pin_commands.hpp"
 #include "program/program_commands.hpp"
 #include "sources/extent.hpp"

@@ -17,6 +17,7 @@
 #include "../options.hpp"
 #include "../scene.hpp"
 #include "../shared_calls.hpp"
+#include "supple/comparison.hpp"
 
 namespace supple::python {
 namespace {
@@ -69,6 +70,7 @@ NB_MODULE(_distributed, module) {
   using namespace supple;
   using namespace supple::python;
   nb::set_leak_warnings(false);
+  use_comparison_methods();
   module.def("library_version", &library_version);
   module.def("end_calls", &WithoutGil::end_calls);
   module.def("forget_calls", &WithoutGil::forget_calls);

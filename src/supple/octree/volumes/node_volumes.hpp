@@ -5,75 +5,65 @@
 #include <span>
 #include <vector>
 
-#include "geometry/oriented_box.hpp"
+#include "octree/node_pair.hpp"
 #include "octree/octree_node.hpp"
 #include "octree/vertex_buffer.hpp"
-#include "octree/volumes/oriented_box_fit.hpp"
-#include "octree/volumes/slab_kernels.hpp"
+#include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
 
-/// Whether the kind is an oriented box or a k-DOP: where boxes overlap, the search tests these volumes.
+/// Whether the search tests volumes of this kind where boxes overlap.
 constexpr bool is_tested_after_boxes(BoundingVolume kind) {
   return kind != BoundingVolume::aabb && kind != BoundingVolume::sphere;
 }
 
-/// The oriented boxes of the children of a node, one array per number.
-struct alignas(64) ChildOrientedBoxes {
-  float center[3][node_width];
-  float axes[3][3][node_width];  ///< axis, coordinate, child
-  float half_lengths[3][node_width];
+/// An octree whose boxes are refitted, for `NodeVolumes`; borrowed.
+struct RefittedOctree {
+  std::span<const OctreeNode> nodes;
+  const ChildBoxes* boxes;
+  std::span<const Triangle> triangles;
+  LeafVertexArrays leaves;
+  const VertexBuffer& vertices;
+  std::span<const std::uint8_t> inert;  ///< a byte per triangle, or empty
+  /// False: the volumes of deeper nodes are out of date.
+  bool are_nodes_current = true;
 };
 
-/// The oriented boxes or k-DOPs of one octree, or neither; borrowed.
-struct NodeVolumesView {
-  const ChildOrientedBoxes* oriented_boxes = nullptr;
-  const float* slabs = nullptr;  ///< see `floats_per_slab`
-  std::span<const Vec3f> directions{};
-  /// The entry after the nodes: its first child is the whole object.
-  std::uint32_t object = 0;
-
-  bool empty() const { return oriented_boxes == nullptr && slabs == nullptr; }
-  const float* slabs_of(std::uint32_t node) const {
-    return slabs + std::size_t{node} * directions.size() * floats_per_slab;
-  }
-};
-
-/// Volumes of the nodes of one octree that are tighter than boxes: oriented boxes, or the slabs that make
-/// k-DOPs of the boxes. Empty for other kinds of volumes.
+/// Volumes other than boxes of the nodes of one octree. The search tests spheres instead of boxes, and the
+/// other kinds where boxes overlap. The core has none of them (`octree/comparison_methods.hpp`).
 class NodeVolumes {
  public:
-  NodeVolumes(BoundingVolume kind, std::size_t nodes);
+  NodeVolumes(BoundingVolume kind, std::size_t nodes)
+      : kind_(kind), object_(static_cast<std::uint32_t>(nodes)) {}
+  virtual ~NodeVolumes() = default;
+
+  bool replace_boxes() const { return !is_tested_after_boxes(kind_); }
+  /// The entry after the nodes: its first child is the whole object.
+  std::uint32_t object() const { return object_; }
 
   /// Updates the volumes of the children of the nodes [begin, end) of one level, after their boxes and the
-  /// nodes below. Slabs take O(vertices) for the whole octree, oriented boxes O(vertices · levels).
-  void refit(std::span<const OctreeNode> nodes, const ChildBoxes* boxes, const SurfacePart& surface,
-             const LeafVertexArrays& leaves, std::uint32_t begin, std::uint32_t end);
-  /// Updates the volume of the whole object, after all nodes.
-  void refit_object(std::span<const OctreeNode> nodes, const ChildBoxes* boxes, const SurfacePart& surface,
-                    const LeafVertexArrays& leaves);
+  /// nodes below. Calls for different nodes may overlap.
+  virtual void refit(const RefittedOctree& octree, std::uint32_t begin, std::uint32_t end) = 0;
+  /// Updates the volume of the whole object, whose box is `box`.
+  virtual void refit_object(const RefittedOctree& octree, const Aabb& box) = 0;
 
-  bool empty() const { return oriented_boxes_.empty() && slabs_.empty(); }
-  NodeVolumesView view() const;
-  std::size_t bytes() const {
-    return oriented_boxes_.capacity() * sizeof(ChildOrientedBoxes) +
-           moments_.capacity() * sizeof(SurfaceMoments) + slabs_.capacity() * sizeof(float);
-  }
+  /// Clears bit 8 i + j of `masks[k]` when child i of node a and child j of node b of `pairs[k]` are apart.
+  /// Bits of children outside of the pair are unspecified. Never misses an overlap. `b` is of the same kind.
+  virtual void clear_apart(std::span<const NodePair> pairs, const NodeVolumes& b,
+                           const RelativePlacement& placement, std::uint64_t* masks) const = 0;
+
+  /// A child's sphere; empty for other kinds.
+  virtual BoundingSphere sphere(std::uint32_t, int) const { return {}; }
+  /// A child's volume after a translation, as an intersection of slabs: the three axes of an oriented box, or
+  /// those of the box and the other directions of a k-DOP. Rounded outward. Empty for other kinds.
+  virtual std::vector<Slab> slabs(std::uint32_t, int, const Aabb&, Vec3d) const { return {}; }
+  virtual std::size_t bytes() const = 0;
 
  private:
-  std::vector<ChildOrientedBoxes> oriented_boxes_;
-  std::vector<SurfaceMoments> moments_;  // of the nodes
-  std::vector<float> slabs_;
-  std::span<const Vec3f> directions_;
+  BoundingVolume kind_;
+  std::uint32_t object_;
 };
-
-OrientedBox child_oriented_box(const ChildOrientedBoxes& boxes, int child);
-
-/// A child's volume where the object is now, as an intersection of slabs. The three axes of an oriented box,
-/// or those of the box and the other directions of a k-DOP. Rounded outward.
-std::vector<Slab> child_slabs(const NodeVolumesView& volumes, const Aabb& box, std::uint32_t node, int child,
-                              Vec3d translation);
 
 }  // namespace supple

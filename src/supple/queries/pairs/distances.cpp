@@ -135,7 +135,7 @@ std::vector<Queries::NearObjects> Queries::near_objects(double max_distance) con
     }
   }
   std::vector<NearObjects> near;
-  PairFinder finder(BroadPhaseMethod::sweep, BoundingVolume::aabb, {});
+  PairFinder finder(BroadPhaseMethod::automatic, BoundingVolume::aabb, {});
   for (const IndexPair& pair : finder.find_pairs({.boxes = boxes}, world_.parallel)) {
     if (may_be_within(world_[pair.a].box(), world_[pair.b].box(), max_distance) && world_.may_pair(pair))
       near.push_back({.pair = {world_.id_of(pair.a), world_.id_of(pair.b)}});

@@ -1,4 +1,4 @@
-#include "geometry/polytope.hpp"
+#include "inspect/polytope.hpp"
 
 #include <algorithm>
 #include <cmath>

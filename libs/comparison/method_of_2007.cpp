@@ -1,4 +1,4 @@
-#include "supple/options.hpp"
+#include "supple/comparison.hpp"
 
 namespace supple {
 

@@ -1,6 +1,6 @@
 // Spheres around nodes: enclosing, smallest, and safe for degenerate positions.
 
-#include "octree/volumes/sphere_fit.hpp"
+#include "comparison/volumes/spheres.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 #include "support/soups.hpp"
 #include "support/topologies.hpp"
 
-namespace supple::sphere_fit_test {
+namespace supple::spheres_test {
 
 /// An octree of spheres at the positions of its mesh.
 struct Tree {
@@ -159,9 +159,10 @@ TEST(SphereFit, MinimalIsNeverLarger) {
     const Tree wide(mesh, SphereFit::vertices, {.leaf_size = 1}),
         tight(mesh, SphereFit::minimal, {.leaf_size = 1});
     std::size_t children = 0, smaller = 0;
-    for (std::size_t n = 0; n < wide.octree.nodes().size(); ++n) {
+    for (std::uint32_t n = 0; n < wide.octree.nodes().size(); ++n) {
       for (int child = 0; child < wide.octree.nodes()[n].child_count; ++child) {
-        const float w = wide.octree.spheres()[n].radius[child], t = tight.octree.spheres()[n].radius[child];
+        const float w = wide.octree.volumes()->sphere(n, child).radius,
+                    t = tight.octree.volumes()->sphere(n, child).radius;
         ASSERT_LE(t, w);
         ++children;
         smaller += t < 0.98f * w ? 1 : 0;
@@ -204,12 +205,11 @@ TEST(SphereFit, IsTheSameForAnyNumberOfThreads) {
   for (const SphereFit fit : {SphereFit::vertices, SphereFit::minimal}) {
     const Tree one(mesh, fit, {.leaf_size = 2}), four(mesh, fit, {.leaf_size = 2}, 4);
     EXPECT_EQ(one.octree.sphere(), four.octree.sphere());
-    for (std::size_t n = 0; n < one.octree.nodes().size(); ++n) {
+    for (std::uint32_t n = 0; n < one.octree.nodes().size(); ++n) {
       for (int child = 0; child < node_width; ++child)
-        ASSERT_EQ(child_sphere(one.octree.spheres()[n], child),
-                  child_sphere(four.octree.spheres()[n], child));
+        ASSERT_EQ(one.octree.volumes()->sphere(n, child), four.octree.volumes()->sphere(n, child));
     }
   }
 }
 
-}  // namespace supple::sphere_fit_test
+}  // namespace supple::spheres_test

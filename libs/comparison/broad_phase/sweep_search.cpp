@@ -1,4 +1,4 @@
-#include "broad_phase/sweep/sweep_search.hpp"
+#include "comparison/broad_phase/sweep_search.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "octree/build/regular_build.hpp"
+#include "comparison/builds/builds.hpp"
 
 #include <algorithm>
 #include <bit>

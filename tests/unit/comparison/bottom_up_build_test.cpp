@@ -1,4 +1,4 @@
-#include "octree/build/bottom_up_build.hpp"
+#include "comparison/builds/builds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,15 @@
-#include "octree/volumes/sphere_fit.hpp"
+#include "comparison/volumes/spheres.hpp"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
 
 #include "core/float_rounding.hpp"
+#include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
@@ -43,7 +45,8 @@ Vec3f middle_of(const Aabb& box) {
 /// Finds the vertex that is farthest from a centre.
 class FarthestVertex {
  public:
-  explicit FarthestVertex(const SphereFitter& octree) : octree_(octree) {}
+  FarthestVertex(const RefittedOctree& octree, std::span<const ChildSpheres> spheres)
+      : octree_(octree), spheres_(spheres) {}
 
   void start(const Vec3f& center) {
     center_ = center;
@@ -73,14 +76,13 @@ class FarthestVertex {
     }
     struct Reach {
       double most;  ///< bound of the distance
-      int child;
+      std::size_t child;
     };
     std::array<Reach, node_width> reaches;
     const int count = octree_.nodes[n].child_count;
-    for (int child = 0; child < count; ++child) {
-      const BoundingSphere sphere = child_sphere(octree_.spheres[n], child);
-      reaches[static_cast<std::size_t>(child)] = {norm(in_double(sphere.center) - from_) + sphere.radius,
-                                                  child};
+    for (std::size_t child = 0; child < octree_.nodes[n].child_count; ++child) {
+      const BoundingSphere& sphere = spheres_[n][child];
+      reaches[child] = {norm(in_double(sphere.center) - from_) + sphere.radius, child};
     }
     std::sort(reaches.begin(), reaches.begin() + count, [](const Reach& a, const Reach& b) {
       return a.most != b.most ? a.most > b.most : a.child < b.child;
@@ -89,7 +91,7 @@ class FarthestVertex {
       const auto [most, child] = reaches[static_cast<std::size_t>(i)];
       // The factor covers the rounding of the distances.
       if (most * most * (1 + 0x1p-40) < squared_distance_) break;
-      if (!child_sphere(octree_.spheres[n], child).empty()) search_child(n, child);
+      if (!spheres_[n][child].empty()) search_child(n, static_cast<int>(child));
     }
   }
 
@@ -112,7 +114,8 @@ class FarthestVertex {
     position_ = p;
   }
 
-  const SphereFitter& octree_;
+  const RefittedOctree& octree_;
+  std::span<const ChildSpheres> spheres_;
   Vec3f center_{};
   Vec3d from_{}, position_{};
   double squared_distance_ = 0;
@@ -199,24 +202,47 @@ BoundingSphere minimal_sphere(FarthestVertex& farthest, const Vec3f& middle, con
 }
 
 template <class Search>
-BoundingSphere fitted_sphere(const SphereFitter& octree, const Aabb& box, const Search& search) {
+BoundingSphere fitted_sphere(SphereFit fit, FarthestVertex farthest, const Aabb& box, const Search& search) {
   if (box.empty()) return {};
-  if (octree.fit == SphereFit::box) return sphere_from_box(box);
+  if (fit == SphereFit::box) return sphere_from_box(box);
   const Vec3f middle = middle_of(box);
-  FarthestVertex farthest(octree);
   farthest.start(middle);
   search(farthest);
-  return octree.fit == SphereFit::minimal ? minimal_sphere(farthest, middle, search) : farthest.sphere();
+  return fit == SphereFit::minimal ? minimal_sphere(farthest, middle, search) : farthest.sphere();
 }
 
 }  // namespace
 
-BoundingSphere SphereFitter::sphere_of_child(std::uint32_t node, int child, const Aabb& box) const {
-  return fitted_sphere(*this, box, [&](FarthestVertex& farthest) { farthest.search_child(node, child); });
+/// Not `refit_bottom_up`: a sphere is fitted to the vertices below, because the union of spheres is larger.
+void Spheres::refit(const RefittedOctree& octree, std::uint32_t begin, std::uint32_t end) {
+  for (std::uint32_t n = begin; n < end; ++n) {
+    for (int child = 0; child < node_width; ++child) {
+      spheres_[n][static_cast<std::size_t>(child)] =
+          fitted_sphere(fit_, FarthestVertex(octree, spheres_), child_box(octree.boxes[n], child),
+                        [&](FarthestVertex& farthest) { farthest.search_child(n, child); });
+    }
+  }
 }
 
-BoundingSphere SphereFitter::sphere_of_object(const Aabb& box) const {
-  return fitted_sphere(*this, box, [](FarthestVertex& farthest) { farthest.search_node(0); });
+void Spheres::refit_object(const RefittedOctree& octree, const Aabb& box) {
+  object_sphere_ = fitted_sphere(fit_, FarthestVertex(octree, spheres_), box,
+                                 [](FarthestVertex& farthest) { farthest.search_node(0); });
+}
+
+void Spheres::clear_apart(std::span<const NodePair> pairs, const NodeVolumes& b,
+                          const RelativePlacement& placement, std::uint64_t* masks) const {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    for (std::uint32_t rest_a = pairs[k].children_a; rest_a != 0; rest_a &= rest_a - 1) {
+      const int i = std::countr_zero(rest_a);
+      const BoundingSphere one = sphere(pairs[k].a, i);
+      for (std::uint32_t rest_b = pairs[k].children_b; rest_b != 0; rest_b &= rest_b - 1) {
+        const int j = std::countr_zero(rest_b);
+        const BoundingSphere other = static_cast<const Spheres&>(b).sphere(pairs[k].b, j);
+        const bool are_apart = !overlap(one, other, placement.offset, placement.slop);
+        masks[k] &= ~(std::uint64_t{are_apart} << (node_width * i + j));
+      }
+    }
+  }
 }
 
 }  // namespace supple

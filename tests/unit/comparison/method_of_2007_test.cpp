@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "supple/comparison.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/polytope.hpp"
+#include "inspect/polytope.hpp"
 #include "octree/object_octree.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
@@ -30,7 +30,7 @@ struct Built {
     for (std::uint32_t n = 0; n < octree.nodes().size(); ++n) {
       for (int child = 0; child < octree.nodes()[n].child_count; ++child) {
         const Aabb box = child_box(octree.boxes()[n], child);
-        sum += Polytope(child_slabs(octree.volumes(), box, n, child, {})).surface();
+        sum += Polytope(octree.volumes()->slabs(n, child, box, {})).surface();
       }
     }
     return sum;
@@ -67,8 +67,8 @@ TriangleMesh rod() {
 TEST(NodeVolumes, OrientedBoxesTurnWithTheObject) {
   const Built straight(rod(), BoundingVolume::obb), oblique(turned(rod(), 0.7), BoundingVolume::obb);
   const auto surface_of_object = [](const Built& built) {
-    const NodeVolumesView volumes = built.octree.volumes();
-    return Polytope(child_slabs(volumes, built.octree.box(), volumes.object, 0, {})).surface();
+    const NodeVolumes& volumes = *built.octree.volumes();
+    return Polytope(volumes.slabs(volumes.object(), 0, built.octree.box(), {})).surface();
   };
   EXPECT_NEAR(surface_of_object(oblique) / surface_of_object(straight), 1, 1e-4);
   EXPECT_LT(surface_of_object(oblique), half_surface(oblique.octree.box()));
@@ -82,7 +82,7 @@ TEST(NodeVolumes, OrientedBoxesAreNeverLargerThanBoxes) {
     for (std::uint32_t n = 0; n < built.octree.nodes().size(); ++n) {
       for (int child = 0; child < built.octree.nodes()[n].child_count; ++child) {
         const Aabb box = child_box(built.octree.boxes()[n], child);
-        const double surface = Polytope(child_slabs(built.octree.volumes(), box, n, child, {})).surface();
+        const double surface = Polytope(built.octree.volumes()->slabs(n, child, box, {})).surface();
         EXPECT_LE(surface, 2 * half_surface(box) * (1 + 1e-5));
       }
     }
@@ -103,8 +103,8 @@ TEST(NodeVolumes, MoreDirectionsAreTighter) {
 TEST(NodeVolumes, SlabsAreTight) {
   const TriangleMesh mesh = random_soup(300, 1, 0.2, 2);
   const Built built(mesh, BoundingVolume::kdop26);
-  const NodeVolumesView volumes = built.octree.volumes();
-  for (const Slab& slab : child_slabs(volumes, built.octree.box(), volumes.object, 0, {})) {
+  const NodeVolumes& volumes = *built.octree.volumes();
+  for (const Slab& slab : volumes.slabs(volumes.object(), 0, built.octree.box(), {})) {
     const Vec3d direction{slab.direction.x, slab.direction.y, slab.direction.z};
     double low = INFINITY, high = -INFINITY;
     for (const Vec3d& p : mesh.positions) {
@@ -218,20 +218,6 @@ TEST(NodeVolumes, TighterVolumesHaveFewerCandidatesAndPairs) {
               volume != BoundingVolume::aabb && volume != BoundingVolume::sphere)
         << name_of(volume);
   }
-}
-
-TEST(Polytope, EdgesAndSurfaceOfKnownShapes) {
-  std::vector<Slab> cube{{{1, 0, 0}, -1, 1}, {{0, 1, 0}, -1, 1}, {{0, 0, 1}, -1, 1}};
-  EXPECT_EQ(Polytope(cube).edges().size(), 12u);
-  EXPECT_DOUBLE_EQ(Polytope(cube).surface(), 24);
-  // The diagonals cut the cube down to the octahedron |x| + |y| + |z| <= 1.
-  for (const Vec3f& direction : slab_directions_of(BoundingVolume::kdop14))
-    cube.push_back({direction, -1, 1});
-  EXPECT_EQ(Polytope(cube).edges().size(), 12u);
-  EXPECT_NEAR(Polytope(cube).surface(), 4 * std::sqrt(3.0), 1e-12);
-  // A cube without its corners: 8 triangles and 6 octagons.
-  for (std::size_t i = 3; i < cube.size(); ++i) cube[i].low = -2, cube[i].high = 2;
-  EXPECT_EQ(Polytope(cube).edges().size(), 24u);
 }
 
 }  // namespace supple::node_volumes_test
