@@ -59,6 +59,7 @@ class Pile {
 struct OwnPoint {
   Vec3d position;
   double depth = 0;
+  std::array<std::uint64_t, 2> features{};  // of a and of b
   std::uint64_t id = 0;
 };
 struct OwnManifold {
@@ -90,46 +91,77 @@ void reduce(std::span<const OwnPoint> found, OwnManifold& manifold) {
   add_largest([&](const OwnPoint& p) { return -dot(p.position - first, across); });
 }
 
-/// A manifold for each curve, and for each pair of objects within the margins.
-void find_own_manifolds(const DetectResult& result, std::vector<OwnPoint>& points,
+/// A manifold for each curve, of its points and of the vertices that it encloses beyond its plane; and for
+/// each pair of objects within the margins, of the pairs with normals within 45 degrees of that of the
+/// nearest.
+void find_own_manifolds(const Scene& scene, std::vector<OwnPoint>& points,
                         std::vector<OwnManifold>& manifolds) {
+  const DetectResult& result = scene.result();
   manifolds.clear();
   for (const IntersectionCurve& curve : result.curves) {
     points.clear();
+    for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
+      const bool is_a = side == ContactSide::a;
+      for (const std::uint32_t v : result.enclosed_vertices_of(curve, side)) {
+        const Vec3d position = scene.position(is_a ? curve.a : curve.b, v);
+        const double height = (is_a ? -1 : 1) * dot(position - curve.centroid, curve.normal);
+        if (height > 0)
+          points.push_back({position, std::min(height, curve.depth), {is_a ? v : 0, is_a ? 0 : v}});
+      }
+    }
+    const double depth = points.empty() ? curve.depth : 0;
     for (const std::uint32_t i : result.contacts_of(curve)) {
-      for (const ContactPoint& p : result.points_of(result.contacts[i]))
-        points.push_back({p.position, curve.depth});
+      const Contact& contact = result.contacts[i];
+      std::uint64_t k = 0;
+      for (const ContactPoint& p : result.points_of(contact)) {
+        points.push_back({p.position, depth, {++k << 32 | contact.triangle_a, k << 32 | contact.triangle_b}});
+      }
     }
     reduce(points, manifolds.emplace_back(OwnManifold{curve.a, curve.b, curve.normal}));
   }
   for (const ContactGroup& group : result.proximity_groups) {
     points.clear();
-    const ProximityPair* nearest = nullptr;
-    for (const ProximityPair& p : result.proximity_pairs_of(group)) {
-      points.push_back({0.5 * (p.point_a + p.point_b), -p.distance});
-      if (nearest == nullptr || p.distance < nearest->distance) nearest = &p;
+    const std::span<const ProximityPair> pairs = result.proximity_pairs_of(group);
+    const ProximityPair& nearest = *std::ranges::min_element(pairs, {}, &ProximityPair::distance);
+    for (const ProximityPair& p : pairs) {
+      if (dot(p.normal, nearest.normal) < 0.7) continue;
+      const auto feature = [](const std::array<std::uint32_t, 2>& e) {
+        return std::uint64_t{e[0]} << 32 | e[1];
+      };
+      points.push_back(
+          {0.5 * (p.point_a + p.point_b), -p.distance, {feature(p.element_a), feature(p.element_b)}});
     }
-    reduce(points, manifolds.emplace_back(OwnManifold{group.a, group.b, nearest->normal}));
+    reduce(points, manifolds.emplace_back(OwnManifold{group.a, group.b, nearest.normal}));
   }
 }
 
-/// Gives each point the id of the nearest one of the last frame that is within 0.1 and has no successor yet.
-/// Both lists are in the order of objects.
+/// Gives each point the id of the point of the last frame with the same features, else that of the nearest
+/// one that is within 0.1 and has no successor yet. Both lists are in the order of objects.
 void match(std::vector<OwnManifold>& last, std::vector<OwnManifold>& manifolds, std::uint64_t& last_id) {
   const auto objects = [](const OwnManifold& m) { return std::pair(m.a, m.b); };
   auto old = last.begin();
   for (OwnManifold& manifold : manifolds) {
     while (old != last.end() && objects(*old) < objects(manifold)) ++old;
     const bool is_old = old != last.end() && objects(*old) == objects(manifold);
-    const std::size_t old_count = is_old ? old->count : 0;
-    for (OwnPoint& point : std::span(manifold.points).first(manifold.count)) {
+    const std::span old_points = std::span(is_old ? old->points.data() : nullptr, is_old ? old->count : 0);
+    const std::span new_points = std::span(manifold.points).first(manifold.count);
+    for (OwnPoint& point : new_points) {
+      for (OwnPoint& other : old_points) {
+        if (other.id != 0 && other.features == point.features) {
+          point.id = std::exchange(other.id, 0);
+          break;
+        }
+      }
+    }
+    for (OwnPoint& point : new_points) {
+      if (point.id != 0) continue;
       OwnPoint* nearest = nullptr;
       double least = 0.01;
-      for (std::size_t i = 0; i < old_count; ++i) {
-        const double distance = squared_norm(old->points[i].position - point.position);
-        if (distance >= least || old->points[i].id == 0) continue;
+      for (OwnPoint& other : old_points) {
+        const double distance = squared_norm(other.position - point.position);
+        if (distance >= least || other.id == 0) continue;
         least = distance;
-        nearest = &old->points[i];
+        nearest = &other;
       }
       point.id = nearest != nullptr ? std::exchange(nearest->id, 0) : ++last_id;
     }
@@ -163,7 +195,7 @@ void run_game(const Choice& choice, const std::string& kinds, Output& output) {
     plain_times.push_back(wall_milliseconds() - start);
     start = wall_milliseconds();
     std::swap(own, last_own);
-    find_own_manifolds(pile.scene.result(), points, own);
+    find_own_manifolds(pile.scene, points, own);
     match(last_own, own, last_id);
     own_times.push_back(wall_milliseconds() - start);
     // Two steps in a row, so that the manifolds of the second one stay.

@@ -15,7 +15,7 @@ void Events::prepare(World& world, const Question& question, DetectResult& found
   list_pairs_of_groups(found);
   if (question.manifolds) {
     Timer timer;
-    find_manifolds(world, question.impact.kinds, found);
+    manifold_pass_.find(found, world, question.impact.kinds == ElementKinds::all && !found.truncated);
     found.stats.manifold_seconds = timer.lap();
   } else {
     manifold_pass_.find_none();
@@ -46,22 +46,6 @@ void Events::prepare_release() {
 
 void Events::release(ObjectId id) {
   for (PairCache* const pairs : all_) pairs->release(id);
-}
-
-void Events::find_manifolds(World& world, ElementKinds kinds, const DetectResult& found) {
-  manifold_objects_.clear();
-  for (std::uint32_t slot = 0; slot < world.slot_count(); ++slot) {
-    manifold_objects_.emplace_back();
-    if (world.at(slot) == nullptr) continue;
-    WorldObject& object = world[slot];
-    manifold_objects_.back() = {
-        {&object.octree(), nullptr, &object.placement().end(), object.placement().translation(),
-         object.placement().is_mirrored(), object.inward_triangles()},
-        &object,
-        object.box(),
-        object.options.solid};
-  }
-  manifold_pass_.find(found, manifold_objects_, kinds == ElementKinds::all && !found.truncated);
 }
 
 /// Pairs of objects one of which has a vertex or a part inside the other, each once, ascending.

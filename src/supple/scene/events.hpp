@@ -34,7 +34,6 @@ class Events {
   void release(ObjectId id);
 
  private:
-  void find_manifolds(World& world, ElementKinds kinds, const DetectResult& found);
   void list_touching_pairs(const DetectResult& found);
   void list_deep_pairs(const DetectResult& found);
   void list_pairs_of_groups(const DetectResult& found);
@@ -44,7 +43,6 @@ class Events {
   ManifoldPass manifold_pass_;
   // Scratch memory of a step.
   std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_, deep_pairs_;
-  std::vector<ManifoldObject> manifold_objects_;
 };
 
 }  // namespace supple

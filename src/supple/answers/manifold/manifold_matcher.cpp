@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
 #include <utility>
 
@@ -24,39 +25,26 @@ void take_ids(const ManifoldLists& before, const Manifold& old, ManifoldLists& n
   const std::span is = std::span(now.points).subspan(manifold.first_point, manifold.point_count);
   const auto* const old_names = before.names.data() + old.first_point;
   const auto* const names = now.names.data() + manifold.first_point;
-  std::array<bool, 4> is_taken{};
-  std::size_t left = std::min(was.size(), is.size());
-  const auto for_each_pair = [&](const auto& visit) {
-    for (std::size_t q = 0; q < is.size(); ++q) {
-      for (std::size_t p = 0; p < was.size() && is[q].lasting == Lasting::begin; ++p) {
-        if (!is_taken[p]) visit(p, q);
-      }
+  // Without branches, because nothing about them is likely. The smallest key is the next match: of those with
+  // the fewest different features the nearest, except that all with the same features are equal.
+  constexpr std::uint64_t taken = ~std::uint64_t{0};
+  std::array<std::uint64_t, 16> keys;
+  keys.fill(taken);
+  for (std::size_t q = 0; q < is.size(); ++q) {
+    for (std::size_t p = 0; p < was.size(); ++p) {
+      const std::uint64_t differs_a = old_names[p][0] != names[q][0],
+                          differs_b = old_names[p][1] != names[q][1];
+      const auto distance = std::bit_cast<std::uint64_t>(squared_norm(is[q].position - was[p].position));
+      keys[4 * q + p] = ((0 - (differs_a | differs_b)) & (distance + 1)) | (differs_a & differs_b) << 63;
     }
-  };
-  const auto take = [&](std::size_t p, std::size_t q) {
-    is_taken[p] = true;
+  }
+  for (std::size_t left = std::min(was.size(), is.size()); left > 0; --left) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < keys.size(); ++i) best = keys[i] < keys[best] ? i : best;
+    const std::size_t p = best % 4, q = best / 4;
     is[q].id = was[p].id;
     is[q].lasting = Lasting::stay;
-    --left;
-  };
-  for_each_pair([&](std::size_t p, std::size_t q) {
-    if (old_names[p] == names[q]) take(p, q);
-  });
-  while (left > 0) {
-    int fewest = 3;
-    double nearest = 0;
-    std::size_t best_p = 0, best_q = 0;
-    for_each_pair([&](std::size_t p, std::size_t q) {
-      const int different =
-          (old_names[p][0] != names[q][0] ? 1 : 0) + (old_names[p][1] != names[q][1] ? 1 : 0);
-      const double distance = squared_norm(is[q].position - was[p].position);
-      if (different > fewest || (different == fewest && !(distance < nearest))) return;
-      fewest = different;
-      nearest = distance;
-      best_p = p;
-      best_q = q;
-    });
-    take(best_p, best_q);
+    for (std::size_t k = 0; k < 4; ++k) keys[4 * q + k] = keys[4 * k + p] = taken;
   }
 }
 
@@ -80,21 +68,21 @@ void ManifoldMatcher::match(const ManifoldLists& before, ManifoldLists& now, std
       end(before.manifolds[old.begin++]);
     find_end(before.manifolds, old);
     if (old.begin < old.end && objects(before.manifolds[old.begin]) != of_found) old.end = old.begin;
-    old_of_.assign(found.end - found.begin, 0);
-    new_of_.assign(old.end - old.begin, 0);
-    if (old_of_.size() != 1 || new_of_.size() != 1) match_several(before, old, now, found);
+    const bool are_one = found.end - found.begin == 1 && old.end - old.begin == 1;
+    if (!are_one) match_several(before, old, now, found);
     for (std::uint32_t i = found.begin; i < found.end; ++i) {
       Manifold& manifold = now.manifolds[i];
-      const std::uint32_t of_old = old_of_[i - found.begin];
+      const std::uint32_t of_old = are_one ? 0 : old_of_[i - found.begin];
       if (of_old != none)
         take_ids(before, before.manifolds[old.begin + of_old], now, manifold);
       else
         manifold.id = ++last_id;
       for (ManifoldPoint& point : std::span(now.points).subspan(manifold.first_point, manifold.point_count)) {
-        if (point.lasting == Lasting::begin) point.id = ++last_id;
+        last_id += point.lasting == Lasting::begin ? 1 : 0;
+        point.id = point.lasting == Lasting::begin ? last_id : point.id;
       }
     }
-    for (std::uint32_t i = old.begin; i < old.end; ++i) {
+    for (std::uint32_t i = old.begin; i < old.end && !are_one; ++i) {
       if (new_of_[i - old.begin] == none) end(before.manifolds[i]);
     }
     found.begin = found.end;
@@ -118,8 +106,8 @@ void ManifoldMatcher::match_several(const ManifoldLists& before, const Range& ol
       if (names[1] != ManifoldLists::no_name) visit(is_one_object ? 0u : 1u, names[1]);
     }
   };
-  std::ranges::fill(old_of_, none);
-  std::ranges::fill(new_of_, none);
+  old_of_.assign(found.end - found.begin, none);
+  new_of_.assign(old.end - old.begin, none);
   if (new_of_.empty()) return;
   named_.clear();
   for (std::uint32_t i = old.begin; i < old.end; ++i) {

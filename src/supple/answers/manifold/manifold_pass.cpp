@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include <hwy/cache_control.h>
+
 #include "geometry/vector.hpp"
 #include "queries/feature_name.hpp"
 
@@ -21,8 +23,15 @@ constexpr double rounding = 0x1p-40;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::uint64_t number_of(const FeatureName& name) {
-  const std::uint64_t first = name.kind == FeatureKind::face ? ~std::uint32_t{0} : name.first;
-  return first << 32 | name.last;
+  const std::uint64_t no_vertex = name.kind == FeatureKind::face ? 1 : 0;
+  return (name.first | (0 - no_vertex)) << 32 | name.last;
+}
+
+/// Whether the point may be inside a solid. Without branches, because no answer is likely.
+bool may_contain(const WorldObject& object, const Vec3d& point) {
+  const Aabb& box = object.box();
+  return object.options.solid & (point.x >= box.min.x) & (point.y >= box.min.y) & (point.z >= box.min.z) &
+         (point.x <= box.max.x) & (point.y <= box.max.y) & (point.z <= box.max.z);
 }
 
 }  // namespace
@@ -30,12 +39,13 @@ std::uint64_t number_of(const FeatureName& name) {
 /// Collects candidates, scaled so that no square overflows or vanishes.
 class ManifoldPass::Collector {
  public:
-  /// `size` is the largest coordinate, and `deepest` the largest depth, if it is known.
-  Collector(std::vector<Candidate>& candidates, const Vec3d& normal, double size, double deepest)
-      : candidates_(candidates),
-        scale_(size > 0 ? std::min(0.5 / size, 0x1p1000) : 1),
-        deepest_(scale_ * deepest) {
-    candidates.clear();
+  /// There will be at most `most` candidates. `size` is the largest coordinate, and `deepest` the largest
+  /// depth, if it is known.
+  Collector(std::vector<Candidate>& candidates, std::size_t most, const Vec3d& normal, double size,
+            double deepest)
+      : scale_(size > 0 ? std::min(0.5 / size, 0x1p1000) : 1), deepest_(scale_ * deepest) {
+    if (candidates.size() < most) candidates.resize(most);
+    candidates_ = candidates.data();
     // "Building an Orthonormal Basis, Revisited" (Duff et al. 2017)
     const double sign = std::copysign(1.0, normal.z), w = -1 / (sign + normal.z),
                  xy = normal.x * normal.y * w;
@@ -50,24 +60,27 @@ class ManifoldPass::Collector {
     deepest_ = std::max(deepest_, scaled_depth);
     const double least = deepest_ - rounding;
     if (scaled_depth >= least && (far > farthest_ || depth_of_first_ < least)) {
-      first_ = candidates_.size();
+      first_ = count_;
       farthest_ = far;
       depth_of_first_ = scaled_depth;
     }
-    candidates_.push_back({x, y, scaled_depth, position, depth, record, part});
+    candidates_[count_++] = {x, y, scaled_depth, position, depth, record, part};
   }
+  std::span<Candidate> candidates() const { return {candidates_, count_}; }
   std::size_t first() const { return first_; }
 
  private:
-  std::vector<Candidate>& candidates_;
+  Candidate* candidates_;
+  std::size_t count_ = 0;
   double scale_;
   Vec3d x_, y_;
   double deepest_, farthest_ = -infinity, depth_of_first_ = -infinity;
   std::size_t first_ = 0;  // the first point to choose
 };
 
-void ManifoldPass::find(const DetectResult& result, std::span<ManifoldObject> objects, bool lists_all_pairs) {
-  objects_ = objects;
+void ManifoldPass::find(const DetectResult& result, const World& world, bool lists_all_pairs) {
+  world_ = &world;
+  objects_.assign(world.slot_count(), {});
   lists_all_pairs_ = lists_all_pairs;
   next_.clear();
   std::uint32_t curve = 0;
@@ -75,6 +88,11 @@ void ManifoldPass::find(const DetectResult& result, std::span<ManifoldObject> ob
     for (; curve < result.curves.size() && is_before(result.curves[curve]); ++curve) add_curve(result, curve);
   };
   for (const ContactGroup& group : result.proximity_groups) {
+    const WorldObject& next =
+        world[(&group == &result.proximity_groups.back() ? &group : &group + 1)->b.index];
+    hwy::Prefetch(&next.box().min);
+    hwy::Prefetch(&next.box().max.z);  // perhaps in the next cache line
+    hwy::Prefetch(&next.options.solid);
     const auto pair = std::tie(group.a, group.b);
     add_curves_until([&](const IntersectionCurve& c) { return std::tie(c.a, c.b) < pair; });
     const bool intersects = curve < result.curves.size() && result.curves[curve].a == group.a &&
@@ -83,6 +101,18 @@ void ManifoldPass::find(const DetectResult& result, std::span<ManifoldObject> ob
   }
   add_curves_until([](const IntersectionCurve&) { return true; });
   match();
+}
+
+ManifoldObject& ManifoldPass::object_of(ObjectId id) {
+  ManifoldObject& listed = objects_[id.index];
+  if (listed.object != nullptr) return listed;
+  WorldObject& object = (*world_)[id.index];
+  const Placement& placement = object.placement();
+  listed = {{&object.octree(), nullptr, &placement.end(), placement.translation(), placement.is_mirrored(),
+             object.inward_triangles()},
+            &object,
+            object.options.solid};
+  return listed;
 }
 
 void ManifoldPass::find_none() {
@@ -102,47 +132,50 @@ void ManifoldPass::publish() {
 }
 
 /// Chooses at most four candidates that span all of them, in the order around the normal; see `Manifold`.
-ManifoldPass::Choice ManifoldPass::choose_points(std::size_t first) const {
+ManifoldPass::Choice ManifoldPass::choose_points(std::span<const Candidate> candidates, std::size_t first) {
   Choice choice{{first}, 1};
   auto& [chosen, count] = choice;
   // Takes the point with the largest value of those with more than `least`; of almost equal ones the deepest.
   const auto add_largest = [&](double least, double weight_of_depth, const auto& value_of) {
-    std::size_t best = candidates_.size();
+    if (count == candidates.size()) return false;
+    std::size_t best = candidates.size();
     double most = -infinity;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      const Candidate& p = candidates_[i];
-      const double value = value_of(p), weighed = value + weight_of_depth * p.scaled_depth;
-      const bool is_better = value > least && weighed > most;
-      most = is_better ? weighed : most;
-      best = is_better ? i : best;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const double value = value_of(candidates[i]);
+      // Without branches: -infinity or NaN, which is never the largest, where the value is not above the
+      // least.
+      const double weighed =
+          std::min((value - least) * infinity, value + weight_of_depth * candidates[i].scaled_depth);
+      best = weighed > most ? i : best;
+      most = std::max(most, weighed);
     }
-    if (best == candidates_.size()) return false;
+    if (best == candidates.size()) return false;
     chosen[count++] = best;
     return true;
   };
   // Twice the area of the triangle of two chosen points and another one, which is to the left.
   const auto area_of = [&](std::size_t from, std::size_t to) {
-    const Candidate &p = candidates_[chosen[from]], &q = candidates_[chosen[to]];
+    const Candidate &p = candidates[chosen[from]], &q = candidates[chosen[to]];
     return [x = p.x, y = p.y, dx = q.x - p.x, dy = q.y - p.y](const Candidate& other) {
       return dx * (other.y - y) - dy * (other.x - x);
     };
   };
-  const auto distance = [x = candidates_[first].x, y = candidates_[first].y](const Candidate& p) {
+  const auto distance = [x = candidates[first].x, y = candidates[first].y](const Candidate& p) {
     return std::sqrt((p.x - x) * (p.x - x) + (p.y - y) * (p.y - y));
   };
-  if (candidates_.size() == 1 || !add_largest(rounding, 1, distance)) return choice;
-  const double length = distance(candidates_[chosen[1]]);
+  if (!add_largest(rounding, 1, distance)) return choice;
+  const double length = distance(candidates[chosen[1]]);
   const double least = std::max(0x1p-10 * length, rounding) * length;
   const auto area = area_of(0, 1);
   if (!add_largest(least, length, [&](const Candidate& p) { return std::fabs(area(p)); })) return choice;
-  if (area(candidates_[chosen[2]]) < 0) std::swap(chosen[1], chosen[2]);
+  if (area(candidates[chosen[2]]) < 0) std::swap(chosen[1], chosen[2]);
   const std::array added{area_of(1, 0), area_of(2, 1), area_of(0, 2)};
   if (!add_largest(least, length, [&](const Candidate& p) {
         return std::max({added[0](p), added[1](p), added[2](p)});
       }))
     return choice;
   // Between the ends of the edge that it is outside of.
-  const Candidate& last = candidates_[chosen[3]];
+  const Candidate& last = candidates[chosen[3]];
   if (added[2](last) > std::max(added[0](last), added[1](last))) return choice;
   std::swap(chosen[2], chosen[3]);
   if (added[0](last) > added[1](last)) std::swap(chosen[1], chosen[2]);
@@ -151,14 +184,17 @@ ManifoldPass::Choice ManifoldPass::choose_points(std::size_t first) const {
 
 /// Reduces the candidates to the points of a manifold. `name_of` gives the features of a candidate.
 template <class NameOf>
-void ManifoldPass::add_manifold(const Manifold& manifold, std::size_t first, const NameOf& name_of) {
+void ManifoldPass::add_manifold(const Manifold& manifold, std::span<const Candidate> candidates,
+                                std::size_t first, const NameOf& name_of) {
+  const auto [chosen, count] = choose_points(candidates, first);
   Manifold& added = next_.manifolds.emplace_back(manifold);
   added.first_point = static_cast<std::uint32_t>(next_.points.size());
-  const auto [chosen, count] = choose_points(first);
   added.point_count = count;
   for (const std::size_t i : std::span(chosen).first(count)) {
-    next_.points.push_back({0, Lasting::begin, candidates_[i].position, candidates_[i].depth});
-    next_.names.push_back(name_of(candidates_[i]));
+    ManifoldPoint& point = next_.points.emplace_back();
+    point.position = candidates[i].position;
+    point.depth = candidates[i].depth;
+    next_.names.push_back(name_of(candidates[i]));
   }
 }
 
@@ -168,7 +204,10 @@ void ManifoldPass::add_curve(const DetectResult& result, std::uint32_t index) {
   const auto points = result.points_of(curve);
   double size = largest_magnitude(curve.centroid);
   for (const Vec3d& point : points) size = std::max(size, largest_magnitude(point));
-  Collector collector(candidates_, curve.normal, size, -infinity);
+  // A contact has at most six points.
+  const std::size_t most =
+      points.size() + 6 * contacts.size() + curve.enclosed_count_a + curve.enclosed_count_b;
+  Collector collector(candidates_, most, curve.normal, size, -infinity);
   const double depth = curve.enclosed_count_a + curve.enclosed_count_b > 0 ? 0 : curve.depth;
   for (std::size_t k = 0; k < points.size(); ++k)
     collector.add(points[k], depth, contacts[std::min(k, contacts.size() - 1)], Candidate::any_point);
@@ -177,29 +216,24 @@ void ManifoldPass::add_curve(const DetectResult& result, std::uint32_t index) {
     const auto of_contact = result.points_of(result.contacts[i]);
     for (std::uint32_t k = 0; k < of_contact.size(); ++k) collector.add(of_contact[k].position, depth, i, k);
   }
-  const std::size_t on_curve = candidates_.size();
+  const std::size_t on_curve = collector.candidates().size();
   for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
     const bool is_a = side == ContactSide::a;
-    const SurfaceView& surface = objects_[is_a ? curve.a.index : curve.b.index].surface;
-    const Vec3d beyond = is_a ? -curve.normal : curve.normal;
     // The vertices that the curve encloses beyond its plane.
     for (const std::uint32_t v : result.enclosed_vertices_of(curve, side)) {
-      const Vec3d position = surface.position(v);
-      const double height = dot(position - curve.centroid, beyond);
+      const Vec3d position = object_of(is_a ? curve.a : curve.b).surface.position(v);
+      const double height = dot(position - curve.centroid, is_a ? -curve.normal : curve.normal);
       if (height > 0 && is_finite(position))
         collector.add(position, std::min(height, curve.depth), v,
                       is_a ? Candidate::vertex_of_a : Candidate::vertex_of_b);
     }
   }
-  if (candidates_.size() == on_curve && depth != curve.depth) {
-    for (Candidate& candidate : candidates_) candidate.depth = curve.depth;
+  if (collector.candidates().size() == on_curve && depth != curve.depth) {
+    for (Candidate& candidate : collector.candidates()) candidate.depth = curve.depth;
   }
-  Manifold manifold{curve.a, curve.b};
-  manifold.source = ManifoldSource::curve;
-  manifold.normal = curve.normal;
-  manifold.depth = curve.depth;
-  manifold.record = index;
-  add_manifold(manifold, collector.first(), [&](const Candidate& candidate) {
+  const Manifold patch{curve.a,      curve.b,     0, {}, ManifoldSource::curve,
+                       curve.normal, curve.depth, 0, 0,  index};
+  add_manifold(patch, collector.candidates(), collector.first(), [&](const Candidate& candidate) {
     if (candidate.part >= Candidate::vertex_of_a) {
       ManifoldLists::PointName name{ManifoldLists::no_name, ManifoldLists::no_name};
       name[candidate.part - Candidate::vertex_of_a] =
@@ -220,11 +254,11 @@ bool ManifoldPass::is_kept_apart(const ProximityPair& pair, double distance, con
   const auto is_apart = [&] { return low_a - high_b >= distance - 0x1p-40 * size; };
   const auto for_each_height = [&](ObjectId id, FeatureKind kind, const std::array<std::uint32_t, 2>& element,
                                    const auto& visit) {
-    const SurfaceView& surface = objects_[id.index].surface;
-    Triangle vertices{element[0], element[1], element[1]};
-    if (kind == FeatureKind::face) vertices = surface.triangle(element[0]);
-    for (const std::uint32_t vertex : vertices) {
-      const Vec3d position = surface.position(vertex);
+    const WorldObject& object = (*world_)[id.index];
+    Triangle vertices{element[0], element[1]};
+    if (kind == FeatureKind::face) vertices = object.octree().user_triangle(element[0]);
+    for (const std::uint32_t vertex : std::span(vertices).first(kind == FeatureKind::face ? 3 : 2)) {
+      const Vec3d position = object.placement().position(vertex);
       size = std::max(size, largest_magnitude(position));
       visit(dot(position, direction));
     }
@@ -246,7 +280,7 @@ template <class DirectionOf>
 void ManifoldPass::add_patch(std::span<const ProximityPair> pairs, const ContactGroup& group,
                              const Direction& nearest, bool has_nearest, std::size_t count,
                              const DirectionOf& direction_of) {
-  Collector collector(candidates_, nearest.normal, size_, -nearest.distance);
+  Collector collector(candidates_, count, nearest.normal, size_, -nearest.distance);
   left_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const Direction& direction = direction_of(i);
@@ -255,20 +289,19 @@ void ManifoldPass::add_patch(std::span<const ProximityPair> pairs, const Contact
       collector.add(0.5 * pair.point_a + 0.5 * pair.point_b, 0 - pair.distance, direction.pair, 0);
     else if (direction.is_one_of_several || group.a == group.b ||
              !is_kept_apart(pair, nearest.distance, nearest.normal))
-      left_.push_back(direction);
+      left_.push_back(direction_of(i));
   }
   std::swap(directions_, left_);
-  ManifoldObject &a = objects_[group.a.index], &b = objects_[group.b.index];
   // The nearest points of two objects lie in the other one, or the way between them starts outside.
-  const bool may_be_inside = !has_nearest || a.may_contain(pairs[nearest.pair].point_b) ||
-                             b.may_contain(pairs[nearest.pair].point_a);
-  if (may_be_inside && !nearest.touches && touching_.starts_inside(pairs[nearest.pair], a, b)) return;
-  Manifold manifold{group.a, group.b};
-  manifold.source = ManifoldSource::pairs;
-  manifold.normal = nearest.normal;
-  manifold.depth = 0 - nearest.distance;
-  manifold.record = group.first_contact + nearest.pair;
-  add_manifold(manifold, collector.first(), [&](const Candidate& candidate) {
+  const bool may_be_inside = !has_nearest ||
+                             may_contain((*world_)[group.a.index], pairs[nearest.pair].point_b) ||
+                             may_contain((*world_)[group.b.index], pairs[nearest.pair].point_a);
+  if (may_be_inside && !nearest.touches &&
+      touching_.starts_inside(pairs[nearest.pair], object_of(group.a), object_of(group.b)))
+    return;
+  Manifold patch{group.a, group.b, 0, {}, ManifoldSource::pairs, nearest.normal, 0 - nearest.distance};
+  patch.record = group.first_contact + nearest.pair;
+  add_manifold(patch, collector.candidates(), collector.first(), [&](const Candidate& candidate) {
     const ProximityPair& pair = pairs[candidate.record];
     return ManifoldLists::PointName{number_of({pair.kind_a, pair.element_a[0], pair.element_a[1]}),
                                     number_of({pair.kind_b, pair.element_b[0], pair.element_b[1]})};
@@ -277,14 +310,14 @@ void ManifoldPass::add_patch(std::span<const ProximityPair> pairs, const Contact
 
 void ManifoldPass::add_patches(const DetectResult& result, const ContactGroup& group) {
   const std::span<const ProximityPair> pairs = result.proximity_pairs_of(group);
-  double least = infinity;
+  double least = infinity, size = 0;
   std::size_t first = 0;
-  size_ = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    size_ = std::max(size_, largest_magnitude(pairs[i].point_a));
+    size = std::max(size, largest_magnitude(pairs[i].point_a));
     first = pairs[i].distance < least ? i : first;
     least = std::min(least, pairs[i].distance);
   }
+  size_ = size;
   const auto direction_of = [&](std::size_t i) {
     return Direction{pairs[i].normal, pairs[i].distance, static_cast<std::uint32_t>(i)};
   };
@@ -298,8 +331,7 @@ void ManifoldPass::add_patches(const DetectResult& result, const ContactGroup& g
         directions_.push_back(direction_of(i));
         continue;
       }
-      const std::span<const Vec3d> normals =
-          touching_.find(pairs[i], objects_[group.a.index], objects_[group.b.index]);
+      const std::span<const Vec3d> normals = touching_.find(pairs[i], object_of(group.a), object_of(group.b));
       if (normals.empty() && group.a != group.b) return;  // the surfaces cross
       for (const Vec3d& normal : normals)
         directions_.push_back({normal, pairs[i].distance, i, true, normals.size() > 1});

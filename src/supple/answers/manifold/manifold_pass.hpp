@@ -9,6 +9,7 @@
 #include "answers/manifold/touching_normals.hpp"
 #include "supple/manifold.hpp"
 #include "supple/result.hpp"
+#include "world/world.hpp"
 
 namespace supple {
 
@@ -66,10 +67,10 @@ class ManifoldMatcher {
 /// Finds the manifolds of a step. It keeps its memory between steps.
 class ManifoldPass {
  public:
-  /// Finds the manifolds of a result, which has the curves and the pairs. `objects` are by index.
+  /// Finds the manifolds of a result over this world, which has the curves and the pairs.
   /// `lists_all_pairs`: none is left out of the pairs of two objects. The lists are those of the last step
   /// until `publish`.
-  void find(const DetectResult& result, std::span<ManifoldObject> objects, bool lists_all_pairs);
+  void find(const DetectResult& result, const World& world, bool lists_all_pairs);
   /// As `find`, for a step without manifolds.
   void find_none();
   /// Does not fail.
@@ -115,12 +116,15 @@ class ManifoldPass {
   template <class DirectionOf>
   void add_patch(std::span<const ProximityPair> pairs, const ContactGroup& group, const Direction& nearest,
                  bool has_nearest, std::size_t count, const DirectionOf& direction_of);
-  Choice choose_points(std::size_t first) const;
+  static Choice choose_points(std::span<const Candidate> candidates, std::size_t first);
   template <class NameOf>
-  void add_manifold(const Manifold& manifold, std::size_t first, const NameOf& name_of);
+  void add_manifold(const Manifold& manifold, std::span<const Candidate> candidates, std::size_t first,
+                    const NameOf& name_of);
   void match();
+  ManifoldObject& object_of(ObjectId id);
 
-  std::span<ManifoldObject> objects_;
+  const World* world_ = nullptr;
+  std::vector<ManifoldObject> objects_;  // by slot, made when they are needed
   ManifoldLists lists_, next_;
   std::vector<EndedManifold> ended_, next_ended_;
   std::uint64_t last_id_ = 0, next_last_id_ = 0;

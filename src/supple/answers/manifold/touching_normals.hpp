@@ -15,18 +15,12 @@ namespace supple {
 struct ManifoldObject {
   SurfaceView surface;
   WorldObject* object = nullptr;
-  Aabb box{};  ///< has the whole surface
   bool is_solid = false;
 
   /// The triangles around a vertex.
   std::span<const std::uint32_t> around(std::uint32_t vertex) {
     if (surface.around == nullptr) surface.around = &object->vertex_triangles();
     return surface.around->around(vertex);
-  }
-  /// Whether the point may be inside the solid. This is quick.
-  bool may_contain(const Vec3d& point) const {
-    return is_solid && point.x >= box.min.x && point.y >= box.min.y && point.z >= box.min.z &&
-           point.x <= box.max.x && point.y <= box.max.y && point.z <= box.max.z;
   }
 };
 
