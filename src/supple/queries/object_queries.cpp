@@ -174,30 +174,34 @@ void ObjectQueries::bound_children(const QueriedObject& object, std::uint32_t no
   }
 }
 
-/// A triangle that is nearly the first one in the direction from the point, in octree order.
-std::uint32_t ObjectQueries::frontmost_triangle(const QueriedObject& object, const Vec3d& point) {
+/// A triangle that is nearly the first one in the direction from the point, in octree order; none when all
+/// are inert.
+std::optional<std::uint32_t> ObjectQueries::frontmost_triangle(const QueriedObject& object,
+                                                               const Vec3d& point) {
   SupportPlane plane;
   plane.origin = middle_of(object);
   const Vec3d way = plane.origin - point;
   plane.normal = way / scaled_norm(way);
   std::uint32_t node = 0;
   for (;;) {
-    int first = 0;
+    int first = -1;
     double least = infinity;
     for (int child = 0; child < object.view.nodes[node].child_count; ++child) {
       if (supple::child_box(object.view.boxes[node], child).empty()) continue;
       const double depth = plane.depth(object.child_box(node, child));
-      if (depth < least) std::tie(least, first) = std::tuple(depth, child);
+      if (first < 0 || depth < least) std::tie(least, first) = std::tuple(depth, child);
     }
+    if (first < 0) return {};
     const OctreeNode& found = object.view.nodes[node];
     if (found.is_inner(first)) {
       node = found.child_node(first);
       continue;
     }
-    std::uint32_t triangle = found.first_triangle[first];
+    std::optional<std::uint32_t> triangle;
     least = infinity;
-    for (std::uint32_t t = triangle; t < found.first_triangle[first + 1]; ++t) {
+    for (std::uint32_t t = found.first_triangle[first]; t < found.first_triangle[first + 1]; ++t) {
       if (object.view.arrays.inert != nullptr && object.view.arrays.inert[t] != 0) continue;
+      if (!triangle) triangle = t;
       for (const Vec3d& corner : object.corners(t)) {
         const double depth = plane.depth(corner);
         if (depth < least) std::tie(least, triangle) = std::tuple(depth, t);
@@ -251,7 +255,9 @@ std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObjec
     const PointBounds seen = seen_by(object, point);
     // Distances in single precision hardly tell its triangles apart, so the search needs a plane.
     if (is_far(object.box, object_bound, far_ratio)) {
-      nearest.decide(index, frontmost_triangle(object, point), FeatureCode::unknown);
+      const std::optional<std::uint32_t> first = frontmost_triangle(object, point);
+      if (!first) continue;
+      nearest.decide(index, *first, FeatureCode::unknown);
       // The triangle of the query before was nearer than the frontmost one.
       if (!nearest.has_plane()) nearest.find_plane();
     }

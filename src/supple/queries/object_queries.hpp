@@ -115,7 +115,7 @@ class ObjectQueries {
   static void bound_children(const QueriedObject& object, std::uint32_t node, const Vec3d& point,
                              const PointBounds& seen, const NearestTriangle& nearest,
                              std::array<double, node_width>& bounds);
-  static std::uint32_t frontmost_triangle(const QueriedObject& object, const Vec3d& point);
+  static std::optional<std::uint32_t> frontmost_triangle(const QueriedObject& object, const Vec3d& point);
   /// Calls `visit` with the triangles of an object whose boxes overlap the region, in octree order within
   /// leaves.
   template <class Visit>

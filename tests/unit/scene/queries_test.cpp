@@ -535,6 +535,42 @@ TEST(QueriesOfAScene, LeaveOutWhatIsNotFinite) {
             (std::vector{Containment::outside, Containment::on, Containment::outside}));
 }
 
+/// What has no area and triangles that are not finite have no closest point, near or far, and hide none of
+/// others.
+TEST(QueriesOfAScene, LeaveOutLinesAndPoints) {
+  TriangleMesh particle, rod, broken, both;
+  particle.positions = rod.positions = {{0.5, 1, 3}, {0.5, 1, 3.001}};
+  particle.points = {0};
+  rod.edges = {{0, 1}};
+  broken.positions = {{0, 0, 0}, {1, 0, 0}, {nan, 0, 0}};
+  broken.triangles = {{0, 1, 2}};
+  broken.points = both.points = {3};
+  broken.positions.push_back({2, 2, 2});
+  both.positions = {{40, 0, 0}, {41, 0, 0}, {40, 1, 0}, {0, 0, 0}};
+  both.triangles = {{0, 1, 2}};
+  for (const double scale : {1.0, 0x1p-1000, 0x1p100, 0x1p1000}) {
+    std::vector<Vec3d> points;
+    for (const double far : {0.0, 1.0, 100.0, 1e6, 1e12}) {
+      points.push_back(scale * Vec3d{0.5 + far, 1, 3});
+      points.push_back(scale * Vec3d{0.1, -far, 0.3});
+    }
+    Scene alone, beside;
+    for (TriangleMesh mesh : {particle, rod, broken, both}) {
+      for (Vec3d& p : mesh.positions) p = scale * p;
+      alone.add(mesh);
+      beside.add(mesh);
+    }
+    alone.remove(alone.objects().back());
+    const auto found = closest_of(beside, points);
+    EXPECT_EQ(verify_closest(beside, points, found).size(), 0u) << scale;
+    for (const auto& each : found) {
+      ASSERT_TRUE(each) << scale;
+      EXPECT_EQ(each->object, beside.objects().back()) << scale;
+    }
+    for (const auto& each : closest_of(alone, points)) EXPECT_FALSE(each) << scale;
+  }
+}
+
 TEST(QueriesOfAScene, HaveClosedBounds) {
   Scene scene;
   scene.add(corner_mesh);
