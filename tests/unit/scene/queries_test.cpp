@@ -548,7 +548,7 @@ TEST(QueriesOfAScene, LeaveOutLinesAndPoints) {
   broken.positions.push_back({2, 2, 2});
   both.positions = {{40, 0, 0}, {41, 0, 0}, {40, 1, 0}, {0, 0, 0}};
   both.triangles = {{0, 1, 2}};
-  for (const double scale : {1.0, 0x1p-1000, 0x1p100, 0x1p1000}) {
+  for (const double scale : {1.0, 0x1p-1000, 0x1p100, 0x1p900}) {
     std::vector<Vec3d> points;
     for (const double far : {0.0, 1.0, 100.0, 1e6, 1e12}) {
       points.push_back(scale * Vec3d{0.5 + far, 1, 3});
