@@ -149,8 +149,8 @@ std::string Comparison::name(const RecordInfo& record, const std::byte* row) con
   for (const char side : {'a', 'b'}) {
     std::string part, object;
     for (const FieldInfo& field : record.fields) {
-      const auto& [names, of_side, list, is_key, is_rounded] = field.role;
-      if (!is_key || of_side != side || names == Names::nothing) continue;
+      const Names names = field.role.names;
+      if (!field.role.is_key || field.role.side != side || names == Names::nothing) continue;
       const auto number = [&](std::size_t i) { return static_cast<std::uint32_t>(number_of(field, row, i)); };
       if (names == Names::object) {
         object = name(ObjectId{number(0), number(1)});

@@ -26,16 +26,18 @@ void ReferenceCheck::list(std::size_t place) const {
     });
   }
   for (const FieldInfo& field : record.fields) {
-    const auto& [names, side, other, is_key, is_rounded] = field.role;
+    const Names names = field.role.names;
+    const char side = field.role.side;
+    const char* const other = field.role.list;
     const bool is_value = *record.name == 0;
-    const auto allowed = [&, names = names, side = side](const std::byte* row) -> std::uint64_t {
+    const auto allowed = [&](const std::byte* row) -> std::uint64_t {
       const RecordedObject& of = object(record, row, side);
       const bool is_face =
           names == Names::triangle ||
           (names == Names::element && record.kind_of_element(row, side) == FeatureKind::face);
       return is_face ? of.triangles.size() : of.rest_positions.size() + (names == Names::rows ? 1 : 0);
     };
-    for_each_row([&, names = names, side = side, other = other](std::size_t i, const std::byte* row) {
+    for_each_row([&](std::size_t i, const std::byte* row) {
       if (!field.words.empty()) {
         below(list.name, i, field.name, number_of(field, row), field.words.size());
         if (field.kind == FieldInfo::Kind::feature)
