@@ -26,9 +26,7 @@ void ReferenceCheck::list(std::size_t place) const {
     });
   }
   for (const FieldInfo& field : record.fields) {
-    const Names names = field.role.names;
-    const char side = field.role.side;
-    const char* const other = field.role.list;
+    const auto& [names, side, other, is_key, is_rounded] = field.role;
     const bool is_value = *record.name == 0;
     const auto allowed = [&](const std::byte* row) -> std::uint64_t {
       const RecordedObject& of = object(record, row, side);
