@@ -143,7 +143,7 @@ TEST(UserData, StaysWithItsObject) {
   EXPECT_EQ(scene.options(b).user_data, 7u);
   EXPECT_TRUE(verify(scene).agrees()) << "the data is no change of the scene";
   scene.remove(a);
-  EXPECT_THROW(scene.options(a).user_data, Error);
+  EXPECT_THROW(static_cast<void>(scene.options(a).user_data), Error);
   EXPECT_EQ(scene.options(scene.add(ball)).user_data, 0u);
 }
 
