@@ -190,10 +190,15 @@ void FoundLists::sort() {
 /// Rows with equal keys keep their order: they are from one rank. Rows of one rank are in order.
 void FoundLists::sort(std::size_t list) {
   const RecordInfo& record = list_infos()[list].record;
-  std::vector<std::uint64_t> keys;
+  std::vector<std::uint64_t> last, key, keys;
+  for (std::uint32_t i = 0; i < count(list) && !(key < last); ++i) {
+    last.swap(key);
+    key.clear();
+    add_key(record, row(list, i), key);
+  }
+  if (!(key < last)) return;
   for (std::uint32_t i = 0; i < count(list); ++i) add_key(record, row(list, i), keys);
-  if (keys.empty()) return;
-  const std::size_t width = keys.size() / count(list);
+  const std::size_t width = key.size();
   const auto key_of = [&](std::uint32_t i) { return std::span(keys).subspan(i * width, width); };
   const auto is_before_row = [&](std::uint32_t i, std::uint32_t k) {
     const auto p = key_of(i), q = key_of(k);
@@ -202,7 +207,6 @@ void FoundLists::sort(std::size_t list) {
   };
   std::vector<std::uint32_t> order(count(list));
   std::iota(order.begin(), order.end(), 0u);
-  if (std::ranges::is_sorted(order, is_before_row)) return;
   std::ranges::sort(order, is_before_row);
   std::vector<std::byte> sorted;
   sorted.reserve(rows_[list].size());

@@ -93,8 +93,8 @@ OrientedBox aligned_box(const Aabb& box) {
   return result;
 }
 
-/// Of the triangles [begin, end) of the octree, without inert ones. Sums over the triangles about the first
-/// corner, then moves the sums to the centre: without a division for each triangle.
+/// Returns the moments of the triangles [begin, end) of the octree that are not inert. It sums about the
+/// first corner, then moves the sums to the centre, which needs no division for each triangle.
 SurfaceMoments moments_of(const RefittedOctree& octree, std::uint32_t begin, std::uint32_t end) {
   std::optional<Vec3d> origin;
   SurfaceMoments sum;
