@@ -10,7 +10,8 @@ them. Public headers include only public headers and the standard library. The p
 include only public headers, files of their own folder and of the one in BUILT_ON, and files of the viewer
 folders in SHARED. Only core/ starts threads, so only core/ may include oneTBB. A chain of includes within a
 layer, a component or a program has at most LONGEST_CHAIN files, and a folder at most MOST_FILES files of its
-own, so that a reader can hold it in mind.
+own, so that a reader can hold it in mind. A file that uses a name of STANDARD includes its header, itself or
+through headers of the project: precompiled headers hide that it is missing, and not all builds have them.
 """
 
 import collections
@@ -43,6 +44,20 @@ SHARED = {"viewer/server": ["session"], "viewer/view_file": ["session", "export"
 BUILT_ON = {"experiments": "cli", "benchmarks": "distributed/src"}
 PUBLIC = ["include", "viewer/include"] + [f"libs/{name}/include" for name in LIBS] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
+STANDARD = {
+    "algorithm": "clamp fill lower_bound max max_element min min_element minmax sort stable_sort upper_bound",
+    "array": "array", "atomic": "atomic", "bit": "bit_cast countr_zero popcount", "cctype": "isdigit isspace tolower toupper",
+    "charconv": "from_chars to_chars", "cmath": "abs floor hypot isfinite isnan sqrt", "condition_variable": "condition_variable",
+    "cstdio": "FILE fprintf printf snprintf", "cstdlib": "abort exit getenv strtod", "cstring": "memcmp memcpy memmove memset strlen",
+    "deque": "deque", "fstream": "ifstream ofstream", "functional": "function", "iomanip": "setprecision setw",
+    "iostream": "cerr cin cout", "limits": "numeric_limits", "map": "map", "memory": "make_shared make_unique shared_ptr unique_ptr",
+    "mutex": "lock_guard mutex scoped_lock unique_lock", "numeric": "accumulate exclusive_scan iota", "optional": "nullopt optional",
+    "queue": "priority_queue queue", "random": "mt19937 mt19937_64 uniform_int_distribution uniform_real_distribution",
+    "set": "set", "span": "span", "sstream": "istringstream ostringstream stringstream", "thread": "thread this_thread",
+    "tuple": "make_tuple tie tuple", "unordered_map": "unordered_map", "unordered_set": "unordered_set", "variant": "get_if variant visit",
+}
+HEADER_OF = {name: header for header, names in STANDARD.items() for name in names.split()}
+STANDARD_NAME = re.compile(r"\bstd::(\w+)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -122,6 +137,29 @@ def in_lib(root, name):
     return [path for path in sources(folder) if not path.is_relative_to(folder / "include")]
 
 
+def headers_that_miss(root):
+    """Yields (path, line number, a standard name, what is wrong) for each use without its header."""
+    folders = [root / name for name in ("src", "libs", "tests", "fuzz", "bindings", "include", "viewer", *COMPONENTS, *PROGRAMS)]
+    named = collections.defaultdict(set)
+    for path in {path for folder in folders for path in sources(folder) if "node_modules" not in path.parts}:
+        named[path.name].add(path)
+    known = {}
+
+    def headers(path):
+        if path not in known:
+            known[path] = set()
+            for _, bracket, name in includes(path):
+                own = [other for other in named[pathlib.PurePath(name).name] if other.as_posix().endswith(f"/{name}")]
+                known[path].update([name], *map(headers, own))
+        return known[path]
+
+    for path in sorted(set().union(*named.values())):
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            for name in STANDARD_NAME.findall(line.split("//")[0]):
+                if name in HEADER_OF and HEADER_OF[name] not in headers(path):
+                    yield path, number, f"std::{name}", f"include <{HEADER_OF[name]}>, here or in a header of this file"
+
+
 def problems(root):
     """Yields (path, line number, include, what is wrong)."""
     library = root / "src/supple"
@@ -170,6 +208,7 @@ def problems(root):
             for number, bracket, name in includes(path):
                 if what := problem_in_program(root, folder, path, bracket, name):
                     yield path, number, name, what
+    yield from headers_that_miss(root)
 
 
 def main():

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "supple/triangle_intersection.hpp"
 #include "support/option_word.hpp"
