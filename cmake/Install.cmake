@@ -8,7 +8,7 @@ install(EXPORT suppleTargets NAMESPACE supple:: DESTINATION ${package_dir})
 
 # Each component has its own targets file, which find_package reads only on request. So a program that links
 # only the core needs none of Assimp, libzip, pugixml and HDF5.
-foreach(component IN ITEMS files describe verify inspect comparison models simulation formats recording distributed viewer)
+foreach(component IN ITEMS files describe verify inspect comparison manifold models simulation formats recording distributed viewer)
   if(TARGET supple_${component})
     set(targets supple_${component})
     if(component STREQUAL "viewer")

@@ -10,6 +10,7 @@
 
 #include "supple/models.hpp"
 #include "supple/supple.hpp"
+#include "supple/use_manifolds.hpp"
 
 using supple::Vec3d;
 
@@ -51,6 +52,7 @@ struct Impulses {
 }  // namespace
 
 int main() {
+  supple::use_manifolds();
   supple::Scene scene(
       {.contacts = supple::ContactKinds::proximity | supple::ContactKinds::penetration, .manifolds = true});
   const supple::ObjectId box = scene.add(supple::make_box({1, 1, 1}, 4), {.name = "crate", .margin = margin});

@@ -30,7 +30,7 @@ LONGEST_CHAIN = 5
 LONGER_CHAINS = {"octree": 6, "answers": 6, "simulation/src": 7, "viewer/session": 7, "benchmarks": 7}
 MOST_FILES = 20
 # Libraries in libs/, each with those whose internal headers it may include. They include all layers.
-LIBS = {"files": [], "describe": [], "verify": [], "inspect": [], "comparison": []}
+LIBS = {"files": [], "describe": [], "verify": [], "inspect": [], "comparison": [], "manifold": []}
 # Libraries around these, each with the last layer whose internal headers it may include; recording: none.
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None, "distributed": "scene"}
 # Components that include internal headers of libraries in libs/.

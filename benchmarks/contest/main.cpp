@@ -9,6 +9,7 @@
 
 #include "contest/cells/cells.hpp"
 #include "supple/comparison.hpp"
+#include "supple/use_manifolds.hpp"
 
 namespace supple::benchmarks {
 namespace {
@@ -125,6 +126,7 @@ Choice choice_of(const std::vector<std::string>& words) {
 int main(int argument_count, char** arguments) {
   using namespace supple::benchmarks;
   supple::use_comparison_methods();
+  supple::use_manifolds();
   const std::vector<std::string> words(arguments + 1, arguments + argument_count);
   try {
     if (words == std::vector<std::string>{"--missing"}) {

@@ -18,6 +18,7 @@
 #include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "supple/comparison.hpp"
+#include "supple/use_manifolds.hpp"
 
 namespace supple::cli {
 namespace {
@@ -60,6 +61,7 @@ int report_lack_of_memory() {
 int run_program(const std::function<int()>& run) {
   open_closed_streams();
   use_comparison_methods();
+  use_manifolds();
   std::set_terminate(terminate);
   // A limit of the file size (ulimit -f) is then an error of writing, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);

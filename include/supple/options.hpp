@@ -177,8 +177,8 @@ struct SceneOptions {
   ElementKinds element_kinds = ElementKinds::all;
   ContinuousListing continuous_listing = ContinuousListing::all;
   /// For penetration and proximity: also a normal, a depth and up to four points for each patch of contacts,
-  /// with ids that last from step to step; see `Manifold`. A request with this option and without these kinds
-  /// is an error.
+  /// with ids that last from step to step; see `Manifold`. It needs `use_manifolds`. A request with this
+  /// option and without these kinds is an error.
   bool manifolds = false;
   /// For penetration: also the curves in which surfaces intersect, each with what it encloses, a normal and a
   /// depth; see `IntersectionCurve`. Takes time in proportion to the contacts and the vertices behind them,

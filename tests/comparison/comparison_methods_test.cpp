@@ -10,6 +10,7 @@
 #include "supple/models.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
+#include "supple/use_manifolds.hpp"
 
 namespace supple::comparison_methods_test {
 
@@ -58,6 +59,26 @@ TEST(ComparisonMethods, AreRefusedByNameUntilTheyAreInUse) {
   use_comparison_methods();
   other.join();
   for (const Method& method : all_methods()) EXPECT_EQ(method.contacts(), expected) << method.name;
+}
+
+TEST(Manifolds, AreRefusedByNameUntilTheyAreInUse) {
+  Scene scene({.contacts = ContactKinds::penetration});
+  for (int i = 0; i < 2; ++i) scene.add(make_model("fish"));
+  try {
+    scene.detect({.manifolds = true});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "manifolds are in the library supple::manifold; link it and call supple::use_manifolds() first");
+  }
+  EXPECT_GT(scene.detect().contacts.size(), 0u) << "the scene goes on";
+  std::thread other(use_manifolds);
+  use_manifolds();
+  other.join();
+  const DetectResult& result = scene.detect({.manifolds = true});
+  EXPECT_GT(result.manifolds.size(), 0u);
+  EXPECT_EQ(result.step, 1u) << "the failed step does not count";
 }
 
 }  // namespace supple::comparison_methods_test

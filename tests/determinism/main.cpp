@@ -10,6 +10,7 @@
 
 #include "golden_hashes.hpp"
 #include "supple/comparison.hpp"
+#include "supple/use_manifolds.hpp"
 
 static_assert(HWY_TARGETS == SUPPLE_TARGET, "the options choose another instruction set, or several");
 
@@ -58,6 +59,7 @@ bool machine_has_it() {
 int main() {
   if (!machine_has_it()) return 77;
   supple::use_comparison_methods();
+  supple::use_manifolds();
   const Results results = compute_golden_hashes();
   std::printf("%016" PRIx64 "\n", results.hash);
   return results.hash == results.expected ? 0 : 1;

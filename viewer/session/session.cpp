@@ -9,6 +9,7 @@
 #include "failure.hpp"
 #include "session_implementation.hpp"
 #include "supple/comparison.hpp"
+#include "supple/use_manifolds.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -208,8 +209,8 @@ void Session::Implementation::fail(const std::string& message, bool fatal,
 }
 
 Session::Session(SceneView show, MemoryBudget budget)
-    : implementation_((use_comparison_methods(), std::make_unique<Implementation>(std::move(show), budget))) {
-}
+    : implementation_((use_comparison_methods(), use_manifolds(),
+                       std::make_unique<Implementation>(std::move(show), budget))) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;

@@ -6,6 +6,7 @@
 #include "supple/comparison.hpp"
 #include "supple/simulation.hpp"
 #include "supple/simulation_descriptions.hpp"
+#include "supple/use_manifolds.hpp"
 #include "supple/version.hpp"
 
 NB_MODULE(_core, module) {
@@ -14,6 +15,7 @@ NB_MODULE(_core, module) {
   // Objects and scenes refer to each other, and tracebacks keep them until the interpreter ends.
   nb::set_leak_warnings(false);
   supple::use_comparison_methods();
+  supple::use_manifolds();
   module.attr("version") = SUPPLE_VERSION;
   const nb::exception<supple::Error> error(module, "Error", PyExc_ValueError);
   nb::exception<supple::MotionError>(module, "MotionError", error);

@@ -280,6 +280,7 @@ LEFT_OUT = {
     ),
     "available_threads": "the option threads says how many run",
     "use_comparison_methods": "the import calls it",
+    "use_manifolds": "the import calls it",
     "usable_cores": "os.sched_getaffinity",
     "advice_for_open_surface": "part of the messages of errors",
     "sin_turns": "for motions that are equal on all machines",
@@ -360,7 +361,7 @@ def test_all_of_cpp_is_there_or_has_a_reason():
     names = python_names().keys() | whole | {name for name in every if name.rpartition("::")[0] in whole}
     left_out = {name: reason for name, reason in LEFT_OUT.items() if name in every}
     assert left_out.keys() == LEFT_OUT.keys()
-    libraries = ["comparison", "core", "describe", "distributed", "files", "inspect", "models", "recording", "simulation", "verify"]
+    libraries = ["comparison", "core", "describe", "distributed", "files", "inspect", "manifold", "models", "recording", "simulation", "verify"]
     binding = {
         "names": [name for name in names if name in every and name not in left_out],
         "left_out": left_out,

@@ -21,8 +21,6 @@ struct ContactTask {
   NodePair root;
 };
 
-constexpr std::size_t no_task = ~std::size_t{0};
-
 /// The work of one worker in a step.
 struct TaskStats {
   TraversalStats traversal;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -21,82 +23,105 @@ struct Range {
   std::uint32_t end() const { return first + count; }
 };
 
-/// The contacts that each job of a step found, as ranges of the lists of the result. `lists` is the number of
-/// lists, for example contacts and points. When neither object of a job has moved, the job reuses the
-/// contacts of the previous step; they only move within the lists. Keeps its memory between steps.
+/// The contacts that the jobs of a step found, as ranges of the lists of the result. `lists` is the number of
+/// lists, for example contacts and points. Only jobs that found something have an outcome. When neither
+/// object of a job has moved, the job reuses the contacts of the previous step; they only move within the
+/// lists. Keeps its memory between steps.
 template <std::size_t lists>
 class JobOutcomes {
  public:
   using Ranges = std::array<Range, lists>;
 
-  /// Starts a step. `versions` are those of the objects' positions. The outcome of a job is known when both
-  /// versions are those of the previous step and that step made the same search.
-  void plan(std::span<const ContactJob> jobs, std::span<const std::uint64_t> versions, bool is_same_search) {
+  /// Starts a step with these jobs, ascending, and workers. `versions` are those of the objects' positions.
+  /// The outcome of a job is known when both versions are those of the previous step and that step made the
+  /// same search.
+  void plan(std::span<const ContactJob> jobs, std::span<const std::uint64_t> versions, bool is_same_search,
+            std::size_t worker_count) {
     // Nothing is known until this step is complete, also when memory runs out on the way.
-    const std::size_t known = std::exchange(reusable_, 0);
+    const std::size_t reusable = std::exchange(reusable_, 0);
+    last_jobs_.resize(is_same_search ? reusable : 0);
     outcomes_.swap(last_outcomes_);
-    // The two lists take turns; both grow at once.
-    outcomes_.reserve(last_outcomes_.capacity());
-    last_outcomes_.resize(is_same_search ? known : 0);
     outcomes_.clear();
     open_jobs_.clear();
-    std::uint32_t last = 0;
-    for (const ContactJob& job : jobs) {
-      while (last < last_outcomes_.size() && last_outcomes_[last].job < job) ++last;
-      Outcome outcome{job, {}, none, 0, 0};
-      const bool was_tested = last < last_outcomes_.size() && last_outcomes_[last].job == job;
-      if (was_tested && is_unmoved(job.a, versions) && is_unmoved(job.b, versions)) {
-        outcome.known = last;
-        for (std::size_t list = 0; list < lists; ++list)
-          outcome.ranges[list].count = last_outcomes_[last].ranges[list].count;
-      } else {
-        open_jobs_.push_back(static_cast<std::uint32_t>(outcomes_.size()));
+    std::size_t last = 0;
+    std::uint32_t known = 0;
+    for (std::uint32_t job = 0; job < jobs.size(); ++job) {
+      const auto [a, b] = jobs[job];
+      while (last < last_jobs_.size() && last_jobs_[last] < jobs[job]) ++last;
+      const bool was_tested = last < last_jobs_.size() && last_jobs_[last] == jobs[job];
+      if (!was_tested || !is_unmoved(a, versions) || !is_unmoved(b, versions)) {
+        open_jobs_.push_back(job);
+        continue;
       }
-      outcomes_.push_back(outcome);
+      while (known < last_outcomes_.size() && last_outcomes_[known].job < last) ++known;
+      if (known == last_outcomes_.size() || last_outcomes_[known].job != last) continue;
+      Outcome& outcome = outcomes_.emplace_back(Outcome{job, known, 0, 0, last_outcomes_[known].ranges});
+      for (Range& range : outcome.ranges) range.first = 0;
     }
+    last_jobs_.assign(jobs.begin(), jobs.end());
     last_versions_.assign(versions.begin(), versions.end());
+    expect_tasks(worker_count);
   }
   /// Indices of the jobs whose outcome is not known, ascending.
   std::span<const std::uint32_t> open_jobs() const { return open_jobs_; }
 
-  std::size_t size() const { return outcomes_.size(); }
-  ContactJob job(std::size_t i) const { return outcomes_[i].job; }
-  bool is_known(std::size_t i) const { return outcomes_[i].known != none; }
-  const Ranges& ranges(std::size_t i) const { return outcomes_[i].ranges; }
-  /// The ranges of a known job in the lists of the previous step.
-  const Ranges& last_ranges(std::size_t i) const { return last_outcomes_[outcomes_[i].known].ranges; }
-
-  /// The ranges that a task wrote in its worker's lists.
+  /// The ranges that a task of a job wrote in its worker's lists.
   struct TaskOutcome {
-    std::uint32_t worker = 0;
+    std::uint32_t job = 0, task = 0, worker = 0;
     Ranges ranges;
   };
-  void expect_tasks(std::size_t count) { task_outcomes_.resize(count); }
-  TaskOutcome& of_task(std::size_t task) { return task_outcomes_[task]; }
-  /// The ranges of a task, which then has none: another task of its job and its worker continues them.
-  Ranges take(std::size_t task) { return std::exchange(task_outcomes_[task].ranges, Ranges{}); }
-  std::span<const TaskOutcome> tasks_of(std::size_t i) const {
-    return std::span(task_outcomes_).subspan(outcomes_[i].first_task, outcomes_[i].task_count);
+  /// Forgets what tasks added.
+  void expect_tasks(std::size_t worker_count) {
+    of_workers_.resize(worker_count);
+    for (std::vector<TaskOutcome>& added : of_workers_) added.clear();
+  }
+  /// Each worker may add at the same time.
+  void add(const TaskOutcome& found) {
+    const auto has_some = [](const Range& range) { return range.count != 0; };
+    if (std::ranges::any_of(found.ranges, has_some)) of_workers_[found.worker].push_back(found);
+  }
+  /// Takes back what the worker added last, if a task of this job did: another one continues its ranges.
+  std::optional<Ranges> take(std::uint32_t job, std::uint32_t worker) {
+    std::vector<TaskOutcome>& added = of_workers_[worker];
+    if (added.empty() || added.back().job != job) return std::nullopt;
+    const Ranges ranges = added.back().ranges;
+    added.pop_back();
+    return ranges;
   }
 
-  /// Assigns each job its ranges of the lists, in the order of the jobs.
-  void place(std::span<const ContactTask> tasks) {
-    std::uint32_t task = 0;
-    Ranges last{};
-    for (std::uint32_t i = 0; i < outcomes_.size(); ++i) {
-      Outcome& outcome = outcomes_[i];
-      outcome.first_task = task;
-      for (; task < tasks.size() && tasks[task].job == i; ++task) {
+  /// Assigns all ranges of the lists, in the order of the jobs. Only then all outcomes are there.
+  void place() {
+    tasks_.clear();
+    for (const std::vector<TaskOutcome>& added : of_workers_)
+      tasks_.insert(tasks_.end(), added.begin(), added.end());
+    std::ranges::sort(tasks_, {}, [](const TaskOutcome& found) { return std::pair(found.job, found.task); });
+    for (std::uint32_t task = 0; task < tasks_.size();) {
+      Outcome& outcome = outcomes_.emplace_back(Outcome{tasks_[task].job, none, task, 0, {}});
+      for (; task < tasks_.size() && tasks_[task].job == outcome.job; ++task, ++outcome.task_count) {
         for (std::size_t list = 0; list < lists; ++list)
-          outcome.ranges[list].count += task_outcomes_[task].ranges[list].count;
+          outcome.ranges[list].count += tasks_[task].ranges[list].count;
       }
-      outcome.task_count = task - outcome.first_task;
+    }
+    std::ranges::sort(outcomes_, {}, &Outcome::job);
+    Ranges last{};
+    for (Outcome& outcome : outcomes_) {
       for (std::size_t list = 0; list < lists; ++list) outcome.ranges[list].first = last[list].end();
       last = outcome.ranges;
     }
   }
 
-  /// Moves the items of known jobs to their new ranges and resizes the list. Known jobs keep their order.
+  /// The outcomes, ascending by the index of their job.
+  std::size_t size() const { return outcomes_.size(); }
+  std::uint32_t job(std::size_t i) const { return outcomes_[i].job; }
+  bool is_known(std::size_t i) const { return outcomes_[i].known != none; }
+  const Ranges& ranges(std::size_t i) const { return outcomes_[i].ranges; }
+  /// The ranges of a known outcome in the lists of the previous step.
+  const Ranges& last_ranges(std::size_t i) const { return last_outcomes_[outcomes_[i].known].ranges; }
+  std::span<const TaskOutcome> tasks_of(std::size_t i) const {
+    return std::span(tasks_).subspan(outcomes_[i].first_task, outcomes_[i].task_count);
+  }
+
+  /// Moves the items of known outcomes to their new ranges and resizes the list. Known ones keep their order.
   /// Moving first those that go down, from the front, and then those that go up, from the back, overwrites
   /// nothing that is still needed.
   template <std::size_t list, class Item>
@@ -117,15 +142,16 @@ class JobOutcomes {
   }
 
   /// The lists are complete; the next step may reuse them.
-  void complete() { reusable_ = outcomes_.size(); }
+  void complete() { reusable_ = last_jobs_.size(); }
   /// Keeps the first `most` contacts. The next step does not reuse the job that is cut, nor any after it.
   void truncate(std::uint64_t most) {
-    for (reusable_ = 0; outcomes_[reusable_].ranges[0].end() <= most;) ++reusable_;
-    outcomes_.resize(reusable_ + 1);
-    Range& contacts = outcomes_.back().ranges[0];
+    std::size_t cut = 0;
+    while (outcomes_[cut].ranges[0].end() <= most) ++cut;
+    outcomes_.resize(cut + 1);
+    reusable_ = outcomes_[cut].job;
+    Range& contacts = outcomes_[cut].ranges[0];
     contacts.count = static_cast<std::uint32_t>(most - contacts.first);
   }
-  std::uint64_t contact_count() const { return outcomes_.empty() ? 0 : outcomes_.back().ranges[0].end(); }
 
   /// Lists the jobs that have contacts.
   template <class IdOf>
@@ -133,29 +159,31 @@ class JobOutcomes {
     groups.clear();
     for (const Outcome& outcome : outcomes_) {
       const Range contacts = outcome.ranges[0];
-      if (contacts.count != 0)
-        groups.push_back({id_of(outcome.job.a), id_of(outcome.job.b), contacts.first, contacts.count});
+      const auto [a, b] = last_jobs_[outcome.job];
+      if (contacts.count != 0) groups.push_back({id_of(a), id_of(b), contacts.first, contacts.count});
     }
   }
 
  private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
   struct Outcome {
-    ContactJob job;
-    Ranges ranges;
+    std::uint32_t job = 0;       // its index
     std::uint32_t known = none;  // index into `last_outcomes_`
     std::uint32_t first_task = 0, task_count = 0;
+    Ranges ranges;
   };
 
   bool is_unmoved(std::uint32_t slot, std::span<const std::uint64_t> versions) const {
     return slot < last_versions_.size() && last_versions_[slot] == versions[slot];
   }
 
-  std::vector<Outcome> outcomes_, last_outcomes_;  // by job
-  std::vector<std::uint64_t> last_versions_;       // by slot
+  std::vector<Outcome> outcomes_, last_outcomes_;
+  std::vector<ContactJob> last_jobs_;         // of this step, for the next one
+  std::vector<std::uint64_t> last_versions_;  // by slot
   std::vector<std::uint32_t> open_jobs_;
-  std::vector<TaskOutcome> task_outcomes_;
-  std::size_t reusable_ = 0;  // how many outcomes the next step may reuse
+  std::vector<std::vector<TaskOutcome>> of_workers_;
+  std::vector<TaskOutcome> tasks_;
+  std::size_t reusable_ = 0;  // how many of the first jobs the next step may reuse
 };
 
 }  // namespace supple

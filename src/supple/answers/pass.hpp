@@ -34,7 +34,6 @@ struct PassInput {
 template <class Found>
 struct PassWorker {
   std::uint32_t number = 0;
-  std::size_t last_task = no_task;
   Traversal traversal;
   std::vector<Found> found;  ///< by all tasks of the worker
   TaskStats stats;
@@ -57,7 +56,7 @@ struct PassWorker {
 ///   `static is_before(found, found)`      the order of the records of a job
 ///   `place_of(job, found)`                a place for `ContactLimit`; does not descend in that order
 ///   `move_known()`                        moves known records and what belongs to them
-///   `gather_found(job, worker, parallel)` writes the records of a job in order
+///   `gather_found(outcome, worker, parallel)` writes the records of a job in order
 template <class Kind, class ObjectType, class WorkerType, class RecordType>
 class Pass {
  public:
@@ -99,7 +98,6 @@ class Pass {
     for (std::uint32_t w = 0; w < workers_.size(); ++w) {
       Worker& worker = workers_[w];
       worker.number = w;
-      worker.last_task = no_task;
       worker.traversal.set_stop(stop_);
       worker.found.clear();
       worker.stats = {};
@@ -107,7 +105,7 @@ class Pass {
     }
     tasks_.plan(jobs, workers_.size(), workers_[0].traversal,
                 [&](std::uint32_t job) { return kind().view_of_job(job); });
-    outcomes_.expect_tasks(tasks_.tasks().size());
+    outcomes_.expect_tasks(workers_.size());
     tasks_.run(parallel, workers_, stop_,
                [&](std::size_t task, std::uint32_t w) { kind().run_task(task, workers_[w]); });
   }
@@ -116,10 +114,10 @@ class Pass {
   /// lists are then not valid. Records after the first `wanted` may be missing.
   bool run_open_jobs(const PassInput& input, bool is_same_search, std::uint64_t wanted, StepStats& stats) {
     Timer timer;
-    outcomes_.plan(jobs_, input.versions, is_same_search);
+    outcomes_.plan(jobs_, input.versions, is_same_search, input.parallel.worker_count());
     limit_.start(wanted, jobs_.size());
-    for (std::uint32_t job = 0; limit_.is_set() && job < jobs_.size(); ++job)
-      limit_.add(job, outcomes_.ranges(job)[0].count);
+    for (std::size_t known = 0; known < outcomes_.size(); ++known)
+      limit_.add(outcomes_.job(known), outcomes_.ranges(known)[0].count);
     run_tasks(outcomes_.open_jobs(), input.parallel);
     add_stats(workers_, timer.lap(), stats);
     return !stop_.stop_requested();
@@ -128,9 +126,9 @@ class Pass {
   /// The ranges in which a task adds to what its worker has found. With a limit, the tasks of a job that
   /// follow each other share them, so that the list is cut where they together find too much.
   Ranges begin_task(std::size_t task, Worker& worker) {
-    const std::size_t last = std::exchange(worker.last_task, task);
-    const auto tasks = tasks_.tasks();
-    if (limit_.is_set() && last != no_task && tasks[last].job == tasks[task].job) return outcomes_.take(last);
+    if (limit_.is_set()) {
+      if (const auto continued = outcomes_.take(tasks_.tasks()[task].job, worker.number)) return *continued;
+    }
     Ranges ranges{};
     for (std::size_t list = 0; list < list_count; ++list) ranges[list].first = worker.sizes()[list];
     return ranges;
@@ -139,8 +137,9 @@ class Pass {
     Ranges ranges = begun;
     for (std::size_t list = 0; list < list_count; ++list)
       ranges[list].count = worker.sizes()[list] - ranges[list].first;
-    outcomes_.of_task(task) = {worker.number, ranges};
-    limit_.add(tasks_.tasks()[task].job, ranges[0].count - std::min(ranges[0].count, begun[0].count));
+    const std::uint32_t job = tasks_.tasks()[task].job;
+    outcomes_.add({job, static_cast<std::uint32_t>(task), worker.number, ranges});
+    limit_.add(job, ranges[0].count - std::min(ranges[0].count, begun[0].count));
   }
 
   /// Drops what a task has found too much from `first` on: what follows the first `wanted()`. Returns whether
@@ -158,8 +157,8 @@ class Pass {
 
   /// Visits what the tasks of a job have found, with the worker that has it and its index there.
   template <class Visit>
-  void for_each_found(std::size_t job, const Visit& visit) const {
-    for (const auto& [worker, ranges] : outcomes_.tasks_of(job)) {
+  void for_each_found(std::size_t outcome, const Visit& visit) const {
+    for (const auto& [job, task, worker, ranges] : outcomes_.tasks_of(outcome)) {
       for (std::uint32_t i = ranges[0].first; i < ranges[0].end(); ++i)
         visit(workers_[worker].found[i], worker, i);
     }
@@ -169,16 +168,16 @@ class Pass {
   /// All workers share a job with many records.
   void gather(const Parallel& parallel) {
     constexpr std::uint32_t many = 8192;
-    outcomes_.place(tasks_.tasks());
+    outcomes_.place();
     kind().move_known();
-    const auto has_many = [&](std::size_t job) { return outcomes_.ranges(job)[0].count >= many; };
+    const auto has_many = [&](std::size_t outcome) { return outcomes_.ranges(outcome)[0].count >= many; };
     parallel.for_ranges(outcomes_.size(), 8, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-      for (std::size_t job = begin; job < end; ++job) {
-        if (!outcomes_.is_known(job) && !has_many(job)) kind().gather_found(job, workers_[w], Parallel(1));
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!outcomes_.is_known(i) && !has_many(i)) kind().gather_found(i, workers_[w], Parallel(1));
       }
     });
-    for (std::size_t job = 0; job < outcomes_.size(); ++job) {
-      if (!outcomes_.is_known(job) && has_many(job)) kind().gather_found(job, workers_[0], parallel);
+    for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+      if (!outcomes_.is_known(i) && has_many(i)) kind().gather_found(i, workers_[0], parallel);
     }
     outcomes_.complete();
   }

@@ -32,6 +32,7 @@ void Scene::Implementation::check_vertex_groups() const {
 const DetectResult& Scene::Implementation::detect(const DetectRequest& request) {
   const Question question = question_of(request);
   const StopSignal stop = stop_of(request);
+  events_.start(question);
   result = {};
   result.step = step_;
   result.stopped = true;  // until the end
@@ -74,12 +75,13 @@ const DetectResult& Scene::Implementation::search(const DetectRequest& request, 
 
 std::shared_ptr<const void> Scene::Implementation::keep_result() {
   const auto kept = std::make_shared<KeptLists>();
-  const auto visit_lists = [&](const auto& visit) {
-    detection.visit_lists(visit);
-    events_.visit_lists(visit);
+  const auto keep_all = [&] {
+    detection.visit_lists([&](auto& list) { kept->keep(list); });
+    events_.keep(*kept);
   };
-  visit_lists([&](const auto& list) { kept->copy(list); });
-  visit_lists([&](auto& list) { kept->swap(list); });
+  keep_all();
+  kept->swap();
+  keep_all();
   result = {};
   detected_at_ = 0;
   return kept;

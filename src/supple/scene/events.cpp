@@ -9,16 +9,19 @@
 
 namespace supple {
 
+void Events::start(const Question& question) {
+  if (question.manifolds && !manifolds_) manifolds_ = make_manifold_maker();
+}
+
 void Events::prepare(World& world, const Question& question, DetectResult& found) {
   list_deep_pairs(found);
   list_touching_pairs(found);
   list_pairs_of_groups(found);
-  if (question.manifolds) {
+  if (manifolds_) {
     Timer timer;
-    manifold_pass_.find(found, world, question.impact.kinds == ElementKinds::all && !found.truncated);
+    const bool lists_all_pairs = question.impact.kinds == ElementKinds::all && !found.truncated;
+    manifolds_->find(question.manifolds ? found : DetectResult{}, world, lists_all_pairs);
     found.stats.manifold_seconds = timer.lap();
-  } else {
-    manifold_pass_.find_none();
   }
   const std::array<std::span<const ObjectPair>, 5> pairs{found.object_pairs, leaf_pairs_, touching_pairs_,
                                                          near_pairs_, deep_pairs_};
@@ -29,15 +32,17 @@ void Events::publish(DetectResult& found) {
   const std::array<std::span<const ObjectPair>, 5> pairs{found.object_pairs, leaf_pairs_, touching_pairs_,
                                                          near_pairs_, deep_pairs_};
   for (std::size_t i = 0; i < all_.size(); ++i) all_[i]->update(pairs[i]);
-  manifold_pass_.publish();
-  found.manifolds = manifold_pass_.manifolds();
-  found.manifold_points = manifold_pass_.points();
-  found.ended_manifolds = manifold_pass_.ended();
+  if (manifolds_) manifolds_->publish(found);
   found.volume_events = volume_.events();
   found.narrow_phase_events = narrow_phase_.events();
   found.contact_events = contact_.events();
   found.proximity_events = proximity_.events();
   found.penetration_events = penetration_.events();
+}
+
+void Events::keep(KeptLists& kept) {
+  for (PairCache* const pairs : all_) pairs->visit_lists([&](auto& list) { kept.keep(list); });
+  if (manifolds_) manifolds_->keep(kept);
 }
 
 void Events::prepare_release() {

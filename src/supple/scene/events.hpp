@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
-#include "answers/manifold/manifold_pass.hpp"
 #include "answers/question.hpp"
+#include "core/kept_lists.hpp"
+#include "scene/manifold_maker.hpp"
 #include "scene/pair_cache.hpp"
 #include "supple/result.hpp"
 #include "world/world.hpp"
@@ -14,6 +16,8 @@ namespace supple {
 /// What begins, stays and ends from one step of a scene to the next: pairs of objects and manifolds.
 class Events {
  public:
+  /// Throws `Error` when the question asks for manifolds that this process does not make.
+  void start(const Question& question);
   /// Compares the answers of a step with those of the step before, and measures the time of manifolds. It
   /// does everything that may run out of memory, and the state stays that of the step before until `publish`.
   void prepare(World& world, const Question& question, DetectResult& found);
@@ -21,12 +25,8 @@ class Events {
   /// once.
   void publish(DetectResult& found);
 
-  /// Calls `visit(list)` for each list to which `publish` adds spans.
-  template <class Visit>
-  void visit_lists(const Visit& visit) {
-    for (PairCache* const pairs : all_) pairs->visit_lists(visit);
-    manifold_pass_.visit_lists(visit);
-  }
+  /// Keeps each list to which `publish` adds spans.
+  void keep(KeptLists& kept);
 
   /// Call it before `release`; this may run out of memory.
   void prepare_release();
@@ -40,7 +40,7 @@ class Events {
 
   PairCache volume_, narrow_phase_, contact_, proximity_, penetration_;
   const std::array<PairCache*, 5> all_{&volume_, &narrow_phase_, &contact_, &proximity_, &penetration_};
-  ManifoldPass manifold_pass_;
+  std::unique_ptr<ManifoldMaker> manifolds_;  // once they were asked for
   // Scratch memory of a step.
   std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_, deep_pairs_;
 };

@@ -5,6 +5,7 @@
 #include "supple/mesh_file.hpp"
 #include "supple/recording.hpp"
 #include "supple/supple.hpp"
+#include "supple/use_manifolds.hpp"
 #include "supple/verify.hpp"
 
 int main() {
@@ -15,6 +16,7 @@ int main() {
 
   supple::save_mesh({"", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, "triangle.obj");
   supple::use_comparison_methods();
+  supple::use_manifolds();
   supple::Scene scene({.bounding_volume = supple::BoundingVolume::obb});
   scene.add(supple::load_mesh("triangle.obj"));
   scene.add(supple::load_mesh("triangle.obj"));

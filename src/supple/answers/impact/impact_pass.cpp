@@ -320,11 +320,11 @@ void ImpactPass::keep_first(std::size_t first, std::size_t least, Worker& worker
   worker.keep_first_at = std::max(least_to_keep_first, 2 * (worker.found.size() - first));
 }
 
-void ImpactPass::gather_found(std::size_t job, Worker& worker, const Parallel& parallel) {
+void ImpactPass::gather_found(std::size_t outcome, Worker& worker, const Parallel& parallel) {
   using Key = ImpactWorker::Key;
   worker.order.sort(
       [&](const auto& visit) {
-        for_each_found(job, [&](const ContinuousContact& contact, std::uint32_t finder, std::uint32_t i) {
+        for_each_found(outcome, [&](const ContinuousContact& contact, std::uint32_t finder, std::uint32_t i) {
           visit(Key{contact.kind, contact.element_a, contact.element_b, finder, i});
         });
       },
@@ -332,7 +332,7 @@ void ImpactPass::gather_found(std::size_t job, Worker& worker, const Parallel& p
         return SortKey{static_cast<std::uint32_t>(key.kind), key.element_a[0]};
       },
       std::less<>(), parallel, worker.sorted);
-  const std::size_t first = outcomes_.ranges(job)[0].first;
+  const std::size_t first = outcomes_.ranges(outcome)[0].first;
   parallel.for_ranges(worker.sorted.size(), 1024, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     for (std::size_t i = begin; i < end; ++i)
       records_[first + i] = workers_[worker.sorted[i].worker].found[worker.sorted[i].index];

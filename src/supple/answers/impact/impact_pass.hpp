@@ -204,7 +204,7 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   bool lists_first() const { return options_.listing == ContinuousListing::first; }
   void keep_first(std::size_t first, std::size_t least, Worker& worker) const;
   void move_known() { outcomes_.move_known<0>(records_); }
-  void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);
+  void gather_found(std::size_t outcome, Worker& worker, const Parallel& parallel);
 
   /// After so many attempts to reach rounded positions, elements that touch at the start end the step there.
   static constexpr int most_rounds = 8;

@@ -264,28 +264,30 @@ void IntersectionPass::drop_points(std::size_t first, std::size_t first_point, W
 void IntersectionPass::move_known() {
   outcomes_.move_known<of_contacts>(records_);
   outcomes_.move_known<of_points>(points_);
-  for (std::size_t job = 0; job < outcomes_.size(); ++job) {
-    if (!outcomes_.is_known(job)) continue;
-    const auto [contacts, points] = outcomes_.ranges(job);
-    const std::uint32_t change = points.first - outcomes_.last_ranges(job)[of_points].first;
+  for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+    if (!outcomes_.is_known(i)) continue;
+    const auto [contacts, points] = outcomes_.ranges(i);
+    const std::uint32_t change = points.first - outcomes_.last_ranges(i)[of_points].first;
     if (change == 0) continue;
     for (Contact& contact : std::span(records_).subspan(contacts.first, contacts.count))
       contact.first_point += change;
   }
 }
 
-void IntersectionPass::gather_found(std::size_t job, Worker& worker, const Parallel& parallel) {
+void IntersectionPass::gather_found(std::size_t outcome, Worker& worker, const Parallel& parallel) {
   worker.order.sort(
       [&](const auto& visit) {
-        for_each_found(job, [&](const FoundContact& found, std::uint32_t, std::uint32_t) { visit(found); });
+        for_each_found(outcome,
+                       [&](const FoundContact& found, std::uint32_t, std::uint32_t) { visit(found); });
       },
       [](const FoundContact& found) {
         return SortKey{0, found.triangle_a};
       },
       [](const FoundContact& p, const FoundContact& q) { return is_before(p, q); }, parallel, worker.sorted);
-  const ObjectId a = objects_[jobs_[job].a].id, b = objects_[jobs_[job].b].id;
-  const std::uint32_t first = outcomes_.ranges(job)[of_contacts].first;
-  std::uint32_t point = outcomes_.ranges(job)[of_points].first;
+  const ContactJob job = jobs_[outcomes_.job(outcome)];
+  const ObjectId a = objects_[job.a].id, b = objects_[job.b].id;
+  const std::uint32_t first = outcomes_.ranges(outcome)[of_contacts].first;
+  std::uint32_t point = outcomes_.ranges(outcome)[of_points].first;
   for (std::size_t i = 0; i < worker.sorted.size(); ++i) {
     const FoundContact& found = worker.sorted[i];
     records_[first + i] = {a,     b, found.triangle_a, found.triangle_b, found.kind, found.point_count,

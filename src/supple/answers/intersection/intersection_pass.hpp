@@ -145,7 +145,7 @@ class IntersectionPass : public Pass<IntersectionPass, IntersectedObject, Inters
   }
   void drop_points(std::size_t first, std::size_t first_point, Worker& worker) const;
   void move_known();
-  void gather_found(std::size_t job, Worker& worker, const Parallel& parallel);
+  void gather_found(std::size_t outcome, Worker& worker, const Parallel& parallel);
   void gather_colliding_vertices();
   void append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves, bool side_b);
 

@@ -97,7 +97,7 @@ double way_of_upright(const TrianglePoints& upright, const TrianglePoints& q, do
 }
 
 /// The longest way in z from a to b; minus infinity when nothing of b is straight ahead.
-double way_between(const TrianglePoints& a, const TrianglePoints& b) {
+double longest_way(const TrianglePoints& a, const TrianglePoints& b) {
   double size = 0;
   for (std::size_t i = 0; i < 3; ++i)
     size = std::max({size, largest_magnitude(a[i] - a[0]), largest_magnitude(b[i] - b[0])});
@@ -118,12 +118,25 @@ double way_between(const TrianglePoints& a, const TrianglePoints& b) {
 
 }  // namespace
 
-double CurveParts::way_along(const Vec3d& normal, double limit) {
+void CurveParts::look_along(const Vec3d& normal) {
   const Vec3d size = absolute(normal);
   const bool x_is_least = size.x <= size.y && size.x <= size.z;
   const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
   const Vec3d across = cross(normal, axis), u = across / norm(across), v = cross(normal, u);
   axes_ = {u, v, normal};
+}
+
+double CurveParts::way_between(const TrianglePoints& a, const TrianglePoints& b) const {
+  TrianglePoints seen_a, seen_b;
+  for (std::size_t i = 0; i < 3; ++i) {
+    seen_a[i] = seen(a[i]);
+    seen_b[i] = seen(b[i]);
+  }
+  return longest_way(seen_a, seen_b);
+}
+
+double CurveParts::way_along(const Vec3d& normal, double limit) {
+  look_along(normal);
   if (triangles_[0].empty() || triangles_[1].empty()) return nothing_ahead;
   for (std::size_t side = 0; side < 2; ++side) {
     if (!is_built_[side]) build(side);
@@ -153,8 +166,11 @@ double CurveParts::way_along(const Vec3d& normal, double limit) {
     const std::size_t first = stack_.size();
     if (of_a.child == 0 && of_b.child == 0) {
       for (std::uint32_t i = of_a.first; i < of_a.last; ++i) {
-        for (std::uint32_t k = of_b.first; k < of_b.last; ++k)
-          longest = std::max(longest, way_between(projected_[0][i].corners, projected_[1][k].corners));
+        for (std::uint32_t k = of_b.first; k < of_b.last; ++k) {
+          const double way = longest_way(projected_[0][i].corners, projected_[1][k].corners);
+          if (way > longest) ends_ = {triangles_[0][i].triangle, triangles_[1][k].triangle};
+          longest = std::max(longest, way);
+        }
       }
     } else if (of_b.child == 0 || (of_a.child != 0 && of_a.last - of_a.first >= of_b.last - of_b.first)) {
       push(of_a.child, b);
@@ -206,7 +222,7 @@ void CurveParts::split(std::size_t side, std::uint32_t number) {
   const Node node = nodes_[side][number];
   if (node.last - node.first <= leaf_size) return;
   const auto at = [&](std::uint32_t i) { return triangles_[side].begin() + static_cast<std::ptrdiff_t>(i); };
-  const auto middle_of = [](const TrianglePoints& p) { return p[0] + p[1] + p[2]; };
+  const auto middle_of = [](const Part& p) { return p.corners[0] + p.corners[1] + p.corners[2]; };
   Box box{middle_of(*at(node.first)), middle_of(*at(node.first))};
   for (std::uint32_t i = node.first + 1; i < node.last; ++i)
     box.include({middle_of(*at(i)), middle_of(*at(i))});
@@ -214,9 +230,7 @@ void CurveParts::split(std::size_t side, std::uint32_t number) {
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const std::uint32_t middle = node.first + (node.last - node.first) / 2;
   std::nth_element(at(node.first), at(middle), at(node.last),
-                   [axis](const TrianglePoints& p, const TrianglePoints& q) {
-                     return p[0][axis] + p[1][axis] + p[2][axis] < q[0][axis] + q[1][axis] + q[2][axis];
-                   });
+                   [&](const Part& p, const Part& q) { return middle_of(p)[axis] < middle_of(q)[axis]; });
   nodes_[side][number].child = static_cast<std::uint32_t>(nodes_[side].size());
   nodes_[side].push_back({{}, node.first, middle, 0});
   nodes_[side].push_back({{}, middle, node.last, 0});
@@ -225,7 +239,8 @@ void CurveParts::split(std::size_t side, std::uint32_t number) {
 /// The triangles and the boxes of the nodes as seen along the normal.
 void CurveParts::project(std::size_t side) {
   projected_[side].clear();
-  for (TrianglePoints triangle : triangles_[side]) {
+  for (const Part& part : triangles_[side]) {
+    TrianglePoints triangle = part.corners;
     for (Vec3d& p : triangle) p = seen(p);
     Box box{triangle[0], triangle[0]};
     for (const Vec3d& p : triangle) box.include({p, p});

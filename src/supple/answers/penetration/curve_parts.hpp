@@ -20,8 +20,8 @@ class CurveParts {
     is_built_ = {};
   }
   /// Coordinates are about 1 or less. `side` is 0 for a and 1 for b.
-  void add(std::size_t side, const TrianglePoints& corners) {
-    triangles_[side].push_back(corners);
+  void add(std::size_t side, std::uint32_t triangle, const TrianglePoints& corners) {
+    triangles_[side].push_back({corners, triangle});
     is_built_[side] = false;
   }
 
@@ -35,6 +35,14 @@ class CurveParts {
   /// `rounding`, it may be too long. The search ends where the way exceeds `limit`. O(n log n) for n
   /// triangles whose pairs have ways that differ by more than rounding, and O(n) for further directions.
   double way_along(const Vec3d& normal, double limit = nothing_ahead);
+  /// A triangle of a and one of b.
+  using Ends = std::array<std::uint32_t, 2>;
+  /// After `way_along` without a limit: those between which the longest way is, if it found some.
+  const Ends& ends() const { return ends_; }
+
+  void look_along(const Vec3d& normal);
+  /// After `look_along`: the longest way between two triangles; minus infinity where there is none.
+  double way_between(const TrianglePoints& a, const TrianglePoints& b) const;
 
   /// After `way_along`: whether a triangle of the other side is straight ahead of a point of a, or straight
   /// behind a point of b, within the way. Points on borders count.
@@ -52,6 +60,10 @@ class CurveParts {
       }
       is_upright = is_upright && other.is_upright;
     }
+  };
+  struct Part {
+    TrianglePoints corners;
+    std::uint32_t triangle = 0;
   };
   struct Projected {
     TrianglePoints corners;
@@ -72,11 +84,12 @@ class CurveParts {
   void project(std::size_t side);
   Vec3d seen(const Vec3d& p) const { return {dot(axes_[0], p), dot(axes_[1], p), dot(axes_[2], p)}; }
 
-  std::array<std::vector<TrianglePoints>, 2> triangles_;
+  std::array<std::vector<Part>, 2> triangles_;
   std::array<std::vector<Projected>, 2> projected_;
   std::array<std::vector<Node>, 2> nodes_;
   std::vector<Pair> stack_;
   std::array<bool, 2> is_built_{};
+  Ends ends_{};
   std::array<Vec3d, 3> axes_;  // the last one is the vector
 };
 

@@ -32,26 +32,24 @@ bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObje
                           const DetectResult& result, bool curves) {
   objects_ = objects;
   list_pairs(input.jobs);
-  outcomes_.plan(pairs_, input.versions, std::exchange(with_curves_, curves) == curves);
-  tasks_.clear();
-  for (const std::uint32_t i : outcomes_.open_jobs()) tasks_.push_back({i, {}});
-  outcomes_.expect_tasks(tasks_.size());
   workers_.resize(input.parallel.worker_count());
+  outcomes_.plan(pairs_, input.versions, std::exchange(with_curves_, curves) == curves, workers_.size());
+  const std::span<const std::uint32_t> open = outcomes_.open_jobs();
   for (Worker& worker : workers_) {
     worker.curves.clear();
     worker.inside.clear();
     worker.on_surface.clear();
     worker.parts.clear();
   }
-  input.parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+  input.parallel.for_ranges(open.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t i = begin; i < end && !input.stop.stop_requested(); ++i) {
       const auto first = sizes_of(workers_[w]);
-      run_task(task_of(pairs_[tasks_[i].job], result), result, workers_[w]);
+      run_task(task_of(pairs_[open[i]], result), result, workers_[w]);
       const auto last = sizes_of(workers_[w]);
-      Outcomes::TaskOutcome& outcome = outcomes_.of_task(i);
-      outcome.worker = w;
+      Outcomes::TaskOutcome outcome{open[i], 0, w, {}};
       for (std::size_t list = 0; list < list_count; ++list)
         outcome.ranges[list] = {first[list], last[list] - first[list]};
+      outcomes_.add(outcome);
     }
   });
   if (input.stop.stop_requested()) return false;
@@ -212,7 +210,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
 /// Pairs are in canonical order. Reused items move within the lists; new items are written between them. New
 /// penetrations have no depth yet.
 void PenetrationPass::gather() {
-  outcomes_.place(tasks_);
+  outcomes_.place();
   outcomes_.move_known<of_penetrations>(penetrations_);
   outcomes_.move_known<of_surface>(on_surface_);
   outcomes_.move_known<of_parts>(parts_);
@@ -229,9 +227,10 @@ void PenetrationPass::gather() {
       gather_found(i);
     }
     const Range inside = outcomes_.ranges(i)[of_penetrations], surface = outcomes_.ranges(i)[of_surface];
+    const auto [inner, outer] = pairs_[outcomes_.job(i)];
     if (inside.count + surface.count > 0)
-      groups_.push_back({objects_[pairs_[i].a].queried.id, objects_[pairs_[i].b].queried.id, inside.first,
-                         inside.count, surface.first, surface.count});
+      groups_.push_back({objects_[inner].queried.id, objects_[outer].queried.id, inside.first, inside.count,
+                         surface.first, surface.count});
   }
 }
 
@@ -248,7 +247,8 @@ void PenetrationPass::gather_found(std::size_t i) {
   const Outcomes::Ranges& from = outcome.ranges;
   const Outcomes::Ranges& to = outcomes_.ranges(i);
   const Worker& worker = workers_[outcome.worker];
-  const ObjectId inner = objects_[pairs_[i].a].queried.id, outer = objects_[pairs_[i].b].queried.id;
+  const ContactJob pair = pairs_[outcomes_.job(i)];
+  const ObjectId inner = objects_[pair.a].queried.id, outer = objects_[pair.b].queried.id;
   for (std::uint32_t k = 0; k < to[of_penetrations].count; ++k) {
     const std::uint32_t place = to[of_penetrations].first + k;
     penetrations_[place] = {inner, outer, worker.inside[from[of_penetrations].first + k]};

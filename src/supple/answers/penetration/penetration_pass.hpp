@@ -117,7 +117,6 @@ class PenetrationPass {
   bool with_curves_ = false;
   std::vector<Worker> workers_;
   std::vector<ContactJob> pairs_;  // inner and outer object, ascending
-  std::vector<ContactTask> tasks_;
   Outcomes outcomes_;
   std::vector<std::uint32_t> new_penetrations_;  // whose depths are not known
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/sort_once.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 
@@ -47,9 +48,13 @@ void WayOut::add_triangle(std::size_t side, std::uint32_t triangle) {
   if (is_listed_[side][triangle] != 0) return;
   triangles_[side].push_back(triangle);
   is_listed_[side][triangle] = 1;
+  parts_.add(side, triangle, scaled_corners(side, triangle));
+}
+
+TrianglePoints WayOut::scaled_corners(std::size_t side, std::uint32_t triangle) const {
   TrianglePoints corners = bodies_[side].surface.corners(triangle);
   for (Vec3d& p : corners) p = scale_ * p - origin_;
-  parts_.add(side, corners);
+  return corners;
 }
 
 /// Leaves the outermost probes where there are many.
@@ -135,6 +140,37 @@ void WayOut::try_corners(std::span<const WayCandidate> candidates) {
   }
 }
 
+/// The depth after which the surfaces around the contact do not overlap either: from the ends of the longest
+/// way, it goes on to neighbours as long as they have a longer way. Above the common part of two convex
+/// bodies, their distance along the normal is concave, so this finds their largest one.
+double WayOut::depth_of_surfaces(const Way& way) {
+  if (bodies_[0].queried == nullptr) return way.depth;
+  double longest = parts_.way_along(way.normal);
+  if (longest == none) return way.depth;
+  CurveParts::Ends ends = parts_.ends();
+  for (bool is_longer = true; is_longer;) {
+    is_longer = false;
+    for (std::size_t side = 0; side < 2; ++side) {
+      around_[side].clear();
+      for (const std::uint32_t v : bodies_[side].surface.triangle(ends[side])) {
+        const auto around = bodies_[side].surface.around->around(v);
+        around_[side].insert(around_[side].end(), around.begin(), around.end());
+      }
+      sort_once(around_[side]);
+    }
+    for (const std::uint32_t a : around_[0]) {
+      for (const std::uint32_t b : around_[1]) {
+        const double longer = parts_.way_between(scaled_corners(0, a), scaled_corners(1, b));
+        if (!(longer > longest * equal + CurveParts::rounding)) continue;
+        longest = longer;
+        ends = {a, b};
+        is_longer = true;
+      }
+    }
+  }
+  return std::max(way.depth, longest);
+}
+
 /// The depth from which on no probe is inside: it may leave one part of the other body and enter the next
 /// one. `parts` is how many of them may follow, before rounding decides.
 double WayOut::depth_without_return(const Way& way, int& parts) {
@@ -178,7 +214,9 @@ WayOut::Way WayOut::find(std::span<const WayCandidate> candidates) {
       if (best == nullptr || is_before(tried.way.normal, best->way.normal)) best = &tried;
     }
     if (least == none) return best->way;
-    const double depth = depth_without_return(best->way, parts);
+    const double of_contact = best->is_whole ? best->way.depth : depth_of_surfaces(best->way);
+    best->is_whole = true;
+    const double depth = depth_without_return({best->way.normal, of_contact}, parts);
     if (depth == best->way.depth) return best->way;
     best->way.depth = depth;
     for (Tried& tried : tried_) {

@@ -65,12 +65,15 @@ class WayOut {
   struct Tried {
     Way way;
     bool is_pruned = false;  // the depth is at least that of the way
+    bool is_whole = false;   // it is that of the surfaces around the contact, too
   };
 
   void choose_probes(std::size_t side);
   Tried try_along(const Vec3d& normal, double limit);
   double cast(std::size_t side, const Vec3d& point, const Vec3d& normal, bool is_inside);
   void try_corners(std::span<const WayCandidate> candidates);
+  TrianglePoints scaled_corners(std::size_t side, std::uint32_t triangle) const;
+  double depth_of_surfaces(const Way& way);
   double depth_without_return(const Way& way, int& parts);
   double least_depth() const;
 
@@ -83,6 +86,7 @@ class WayOut {
   std::array<std::vector<std::uint8_t>, 2> is_listed_;   // by triangle
   std::array<std::vector<Vec3d>, 2> probes_;
   std::vector<Vec3d> chosen_;
+  std::array<std::vector<std::uint32_t>, 2> around_;
   std::vector<Tried> tried_;
 };
 

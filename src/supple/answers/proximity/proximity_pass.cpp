@@ -86,7 +86,7 @@ bool ProximityPass::run(const PassInput& input, std::span<const MovingObject> ob
   for (Worker& worker : workers_) worker.stats = {};
   Timer timer;
   sort_found(input.parallel);
-  outcomes_.place(tasks_.tasks());
+  outcomes_.place();
   outcomes_.move_known<0>(records_);
   stats.sort_and_events_seconds += timer.lap();
   compute_found(input.parallel);
@@ -111,7 +111,6 @@ ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
 
 void ProximityPass::run_task(std::size_t task, Worker& worker) {
   const std::uint32_t job = tasks_.tasks()[task].job;
-  outcomes_.of_task(task) = {};  // `sort_found` counts the pairs
   if (worker.is_full && worker.last.job < job) return;
   worker.traversal.find_element_pairs(
       view_of_job(job), tasks_.tasks()[task].root, worker.stats.traversal,
@@ -305,17 +304,20 @@ std::array<PairElement, 2> ProximityPass::with_points(const Crossing& crossing) 
 /// Computes the pairs of all jobs that found some.
 void ProximityPass::compute_found(const Parallel& parallel) {
   blocks_.clear();
-  for (std::uint32_t i = 0; i < found_jobs_.size(); ++i) {
-    for (std::size_t first = 0; first < sorted_[i].size(); first += block_size)
-      blocks_.push_back({i, static_cast<std::uint32_t>(first)});
+  std::uint32_t next = 0;  // of `found_jobs_`, which are the jobs of these outcomes
+  for (std::size_t outcome = 0; outcome < outcomes_.size(); ++outcome) {
+    if (outcomes_.is_known(outcome)) continue;
+    const auto [begin, count] = outcomes_.ranges(outcome)[0];
+    for (std::uint32_t first = 0; first < count; first += block_size)
+      blocks_.push_back({next, first, begin + first});
+    ++next;
   }
   constexpr std::size_t grain = 8;
   parallel.for_ranges(blocks_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    for (const auto& [i, first] : std::span(blocks_).subspan(begin, end - begin)) {
-      const std::uint32_t job = found_jobs_[i];
+    for (const auto& [i, first, place] : std::span(blocks_).subspan(begin, end - begin)) {
       const auto rest = std::span<const FoundPair>(sorted_[i]).subspan(first);
-      compute_pairs(job, rest.first(std::min(block_size, rest.size())), workers_[w],
-                    records_.data() + outcomes_.ranges(job)[0].first + first);
+      compute_pairs(found_jobs_[i], rest.first(std::min(block_size, rest.size())), workers_[w],
+                    records_.data() + place);
     }
   });
 }
@@ -352,7 +354,6 @@ void ProximityPass::compute_pairs(std::uint32_t job, std::span<const FoundPair> 
 
 /// Orders the pairs of each job that found some, each once, and tells their number to the outcomes.
 void ProximityPass::sort_found(const Parallel& parallel) {
-  const std::span<const ContactTask> tasks = tasks_.tasks();
   found_jobs_.clear();
   for (const Worker& worker : workers_) {
     for (const ProximityWorker::Run& run : worker.runs) found_jobs_.push_back(run.job);
@@ -364,9 +365,7 @@ void ProximityPass::sort_found(const Parallel& parallel) {
   parallel.for_ranges(found_jobs_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t i = begin; i < end; ++i) {
       sort_job(found_jobs_[i], workers_[w].order, sorted_[i]);
-      const auto task = std::ranges::lower_bound(tasks, found_jobs_[i], {}, &ContactTask::job);
-      outcomes_.of_task(static_cast<std::size_t>(task - tasks.begin())).ranges[0].count =
-          static_cast<std::uint32_t>(sorted_[i].size());
+      outcomes_.add({found_jobs_[i], 0, w, {Range{0, static_cast<std::uint32_t>(sorted_[i].size())}}});
     }
   });
 }

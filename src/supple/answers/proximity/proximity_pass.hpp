@@ -131,6 +131,7 @@ class ProximityPass : public Pass<ProximityPass, MovingObject, ProximityWorker, 
   /// Part of a list of `sorted_`.
   struct Block {
     std::uint32_t list = 0, first = 0;
+    std::uint32_t place = 0;  // in the result
   };
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> found_jobs_;

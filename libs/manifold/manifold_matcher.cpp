@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "answers/manifold/manifold_pass.hpp"
+#include "manifold/manifold_finder.hpp"
 
 namespace supple {
 namespace {

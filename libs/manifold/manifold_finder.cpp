@@ -1,4 +1,4 @@
-#include "answers/manifold/manifold_pass.hpp"
+#include "manifold/manifold_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 
 #include "geometry/vector.hpp"
 #include "queries/feature_name.hpp"
+#include "supple/use_manifolds.hpp"
 
 namespace supple {
 namespace {
@@ -37,7 +38,7 @@ bool may_contain(const WorldObject& object, const Vec3d& point) {
 }  // namespace
 
 /// Collects candidates, scaled so that no square overflows or vanishes.
-class ManifoldPass::Collector {
+class ManifoldFinder::Collector {
  public:
   /// There will be at most `most` candidates. `size` is the largest coordinate, and `deepest` the largest
   /// depth, if it is known.
@@ -78,7 +79,7 @@ class ManifoldPass::Collector {
   std::size_t first_ = 0;  // the first point to choose
 };
 
-void ManifoldPass::find(const DetectResult& result, const World& world, bool lists_all_pairs) {
+void ManifoldFinder::find(const DetectResult& result, const World& world, bool lists_all_pairs) {
   world_ = &world;
   objects_.assign(world.slot_count(), {});
   lists_all_pairs_ = lists_all_pairs;
@@ -100,10 +101,11 @@ void ManifoldPass::find(const DetectResult& result, const World& world, bool lis
     if (!intersects) add_patches(result, group);
   }
   add_curves_until([](const IntersectionCurve&) { return true; });
-  match();
+  next_last_id_ = last_id_;
+  matcher_.match(lists_, next_, next_last_id_, next_ended_);
 }
 
-ManifoldObject& ManifoldPass::object_of(ObjectId id) {
+ManifoldObject& ManifoldFinder::object_of(ObjectId id) {
   ManifoldObject& listed = objects_[id.index];
   if (listed.object != nullptr) return listed;
   WorldObject& object = (*world_)[id.index];
@@ -115,24 +117,24 @@ ManifoldObject& ManifoldPass::object_of(ObjectId id) {
   return listed;
 }
 
-void ManifoldPass::find_none() {
-  next_.clear();
-  match();
-}
-
-void ManifoldPass::match() {
-  next_last_id_ = last_id_;
-  matcher_.match(lists_, next_, next_last_id_, next_ended_);
-}
-
-void ManifoldPass::publish() {
+void ManifoldFinder::publish(DetectResult& result) {
   std::swap(lists_, next_);
   std::swap(ended_, next_ended_);
   last_id_ = next_last_id_;
+  result.manifolds = lists_.manifolds;
+  result.manifold_points = lists_.points;
+  result.ended_manifolds = ended_;
+}
+
+void ManifoldFinder::keep(KeptLists& kept) {
+  kept.keep(lists_.manifolds);
+  kept.keep(lists_.points);
+  kept.keep(ended_);
 }
 
 /// Chooses at most four candidates that span all of them, in the order around the normal; see `Manifold`.
-ManifoldPass::Choice ManifoldPass::choose_points(std::span<const Candidate> candidates, std::size_t first) {
+ManifoldFinder::Choice ManifoldFinder::choose_points(std::span<const Candidate> candidates,
+                                                     std::size_t first) {
   Choice choice{{first}, 1};
   auto& [chosen, count] = choice;
   // Takes the point with the largest value of those with more than `least`; of almost equal ones the deepest.
@@ -184,8 +186,8 @@ ManifoldPass::Choice ManifoldPass::choose_points(std::span<const Candidate> cand
 
 /// Reduces the candidates to the points of a manifold. `name_of` gives the features of a candidate.
 template <class NameOf>
-void ManifoldPass::add_manifold(const Manifold& manifold, std::span<const Candidate> candidates,
-                                std::size_t first, const NameOf& name_of) {
+void ManifoldFinder::add_manifold(const Manifold& manifold, std::span<const Candidate> candidates,
+                                  std::size_t first, const NameOf& name_of) {
   const auto [chosen, count] = choose_points(candidates, first);
   Manifold& added = next_.manifolds.emplace_back(manifold);
   added.first_point = static_cast<std::uint32_t>(next_.points.size());
@@ -198,7 +200,7 @@ void ManifoldPass::add_manifold(const Manifold& manifold, std::span<const Candid
   }
 }
 
-void ManifoldPass::add_curve(const DetectResult& result, std::uint32_t index) {
+void ManifoldFinder::add_curve(const DetectResult& result, std::uint32_t index) {
   const IntersectionCurve& curve = result.curves[index];
   const auto contacts = result.contacts_of(curve);
   const auto points = result.points_of(curve);
@@ -248,7 +250,7 @@ void ManifoldPass::add_curve(const DetectResult& result, std::uint32_t index) {
 
 /// Whether the elements of a pair are as far apart along a direction of the nearest pair as that pair, but
 /// for rounding.
-bool ManifoldPass::is_kept_apart(const ProximityPair& pair, double distance, const Vec3d& direction) const {
+bool ManifoldFinder::is_kept_apart(const ProximityPair& pair, double distance, const Vec3d& direction) const {
   double low_a = dot(pair.point_a, direction), high_b = dot(pair.point_b, direction);
   double size = std::max(distance, size_);
   const auto is_apart = [&] { return low_a - high_b >= distance - 0x1p-40 * size; };
@@ -277,9 +279,9 @@ bool ManifoldPass::is_kept_apart(const ProximityPair& pair, double distance, con
 /// Keeps the directions in no patch. `direction_of(i)` gives each of `count` directions. `has_nearest`: no
 /// pair of the objects is nearer.
 template <class DirectionOf>
-void ManifoldPass::add_patch(std::span<const ProximityPair> pairs, const ContactGroup& group,
-                             const Direction& nearest, bool has_nearest, std::size_t count,
-                             const DirectionOf& direction_of) {
+void ManifoldFinder::add_patch(std::span<const ProximityPair> pairs, const ContactGroup& group,
+                               const Direction& nearest, bool has_nearest, std::size_t count,
+                               const DirectionOf& direction_of) {
   Collector collector(candidates_, count, nearest.normal, size_, -nearest.distance);
   left_.clear();
   for (std::size_t i = 0; i < count; ++i) {
@@ -308,7 +310,7 @@ void ManifoldPass::add_patch(std::span<const ProximityPair> pairs, const Contact
   });
 }
 
-void ManifoldPass::add_patches(const DetectResult& result, const ContactGroup& group) {
+void ManifoldFinder::add_patches(const DetectResult& result, const ContactGroup& group) {
   const std::span<const ProximityPair> pairs = result.proximity_pairs_of(group);
   double least = infinity, size = 0;
   std::size_t first = 0;
@@ -343,6 +345,10 @@ void ManifoldPass::add_patches(const DetectResult& result, const ContactGroup& g
     add_patch(pairs, group, nearest, false, directions_.size(),
               [&](std::size_t i) -> const Direction& { return directions_[i]; });
   }
+}
+
+void use_manifolds() {
+  set_manifold_maker([]() -> std::unique_ptr<ManifoldMaker> { return std::make_unique<ManifoldFinder>(); });
 }
 
 }  // namespace supple

@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "answers/manifold/touching_normals.hpp"
+#include "manifold/touching_normals.hpp"
+#include "scene/manifold_maker.hpp"
 #include "supple/manifold.hpp"
 #include "supple/result.hpp"
 #include "world/world.hpp"
@@ -64,28 +65,12 @@ class ManifoldMatcher {
   std::vector<std::uint32_t> old_of_, new_of_;  // by new and by old manifold of two objects, or none
 };
 
-/// Finds the manifolds of a step. It keeps its memory between steps.
-class ManifoldPass {
+/// Keeps its memory between steps.
+class ManifoldFinder : public ManifoldMaker {
  public:
-  /// Finds the manifolds of a result over this world, which has the curves and the pairs.
-  /// `lists_all_pairs`: none is left out of the pairs of two objects. The lists are those of the last step
-  /// until `publish`.
-  void find(const DetectResult& result, const World& world, bool lists_all_pairs);
-  /// As `find`, for a step without manifolds.
-  void find_none();
-  /// Does not fail.
-  void publish();
-
-  std::span<const Manifold> manifolds() const { return lists_.manifolds; }
-  std::span<const ManifoldPoint> points() const { return lists_.points; }
-  std::span<const EndedManifold> ended() const { return ended_; }
-  /// Calls `visit(list)` for each list of the result.
-  template <class Visit>
-  void visit_lists(const Visit& visit) {
-    visit(lists_.manifolds);
-    visit(lists_.points);
-    visit(ended_);
-  }
+  void find(const DetectResult& result, const World& world, bool lists_all_pairs) override;
+  void publish(DetectResult& result) override;
+  void keep(KeptLists& kept) override;
 
  private:
   /// A point that may span a manifold.
@@ -120,7 +105,6 @@ class ManifoldPass {
   template <class NameOf>
   void add_manifold(const Manifold& manifold, std::span<const Candidate> candidates, std::size_t first,
                     const NameOf& name_of);
-  void match();
   ManifoldObject& object_of(ObjectId id);
 
   const World* world_ = nullptr;

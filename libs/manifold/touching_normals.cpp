@@ -1,4 +1,4 @@
-#include "answers/manifold/touching_normals.hpp"
+#include "manifold/touching_normals.hpp"
 
 #include <algorithm>
 
