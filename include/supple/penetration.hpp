@@ -89,8 +89,11 @@ inline constexpr std::array words<CurveKind>{"closed", "open", "branched"};
 /// The depth along a direction is the longest way, in this direction, from a point of a to a point of b
 /// straight ahead; rays from vertices inside add the triangles through which these leave. Triangles parallel
 /// to the direction have nothing ahead, and triangles that touch only beside each other are not ahead of each
-/// other: sides that slide past each other do not count. A direction in which nothing is ahead counts only
-/// where all are such; the depth is then 0, as for surfaces that only touch.
+/// other: sides that slide past each other do not count. Between two objects, the longest way goes on from
+/// its ends to triangles beside them while these have a longer one: a also leaves what it would only enter on
+/// its way. So convex objects are apart after the move. Where the longest way begins in the front of a
+/// solid a, or ends in the back of a solid b, the other side there counts, too. A direction in which nothing
+/// is ahead counts only where all are such; the depth is then 0, as for surfaces that only touch.
 ///
 /// `normal` has the least depth of these: the outward normals of the faces of b, and the reverse of those of
 /// a, on which the curve lies (of more than twelve, those of at least an eighth of the curve); the direction

@@ -302,10 +302,13 @@ class PairChecker {
 };
 
 /// Whether a fault comes from the directions that are tried: the faces on which a curve lies change with a
-/// small move, and with them the depth. All other faults are wrong depths.
+/// small move, and with them the least depth.
 inline bool is_of_directions(const std::string& fault) {
-  const auto is = [&](const char* words) { return fault.find(words) != std::string::npos; };
-  return is("moved by") || is("exchanged") || is("still overlap");
+  return fault.find("moved by") != std::string::npos || fault.find("exchanged") != std::string::npos;
+}
+/// Of boxes whose faces are divided and in the same planes, less than one in a thousand keeps an overlap.
+inline bool leaves_overlap(const std::string& fault) {
+  return fault.find("still overlap") != std::string::npos;
 }
 
 }  // namespace supple::solids

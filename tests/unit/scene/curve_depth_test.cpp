@@ -115,6 +115,23 @@ TEST(CurveDepth, OfFlushBoxes) {
   }
 }
 
+/// Each flush face has a curve of its own, and no vertex is inside.
+TEST(CurveDepth, OfABoxAsThickAsTheSlabAroundIt) {
+  for (const double offset : {0.0, 0x1p-20, 0.01, 0.1}) {
+    Scene scene({.contacts = ContactKinds::penetration, .curves = true});
+    scene.add(make_box({1, 0.125, 1}, 1), {.solid = true});
+    TriangleMesh box = make_box({0.5, 0.125, 0.5}, 1);
+    for (Vec3d& p : box.positions) p.x += 0.25 + offset;  // flush on one more side, then beyond it
+    scene.add(box, {.solid = true});
+    const DetectResult& result = scene.detect();
+    ASSERT_GT(result.curves.size(), 0u);
+    for (const IntersectionCurve& curve : result.curves) {
+      EXPECT_DOUBLE_EQ(curve.depth, 0.125) << offset;
+      EXPECT_DOUBLE_EQ(std::fabs(curve.normal.y), 1);
+    }
+  }
+}
+
 TEST(CurveDepth, OfABoxInACorner) {
   const Box a{{0, 0, 0}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
   const Box b{{1.875, 1.75, -1.625}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};

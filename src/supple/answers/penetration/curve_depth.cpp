@@ -56,8 +56,8 @@ void CurveFinder::link_regions() {
     }
     regions_[side].link(static_cast<std::uint32_t>(first_member_.size() - 1));
   }
-  way_out_.start({input_.a, input_.same_object ? nullptr : input_.queried_a},
-                 {input_.b, input_.same_object ? nullptr : input_.queried_b});
+  way_out_.start({input_.a, input_.same_object ? nullptr : input_.queried_a, input_.a_is_solid},
+                 {input_.b, input_.same_object ? nullptr : input_.queried_b, input_.b_is_solid});
 }
 
 /// Finds bodies that only touch: the plane of a face is between their triangles, and nothing is inside.

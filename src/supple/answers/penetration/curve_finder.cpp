@@ -256,17 +256,21 @@ bool CurveFinder::only_touches(std::uint32_t i) const {
 }
 
 /// Whether the triangles of the other side are nowhere behind a face, and those of its own side nowhere in
-/// front of it.
+/// front of it. Faces of solids in one plane that face the same way have both insides behind them.
 bool CurveFinder::separates(std::size_t side, std::uint32_t face,
                             std::span<const std::uint32_t> members) const {
   const TrianglePoints plane = surface_of(side).corners(face);
   bool used_exact = false;
   const auto is_on_its_side = [&](std::uint32_t i, std::size_t of) {
     const TrianglePoints corners = surface_of(of).corners(triangle_of(i, of));
-    return std::all_of(corners.begin(), corners.end(), [&](const Vec3d& p) {
+    bool is_in_plane = true;
+    for (const Vec3d& p : corners) {
       const int height = orient3d(plane[0], plane[1], plane[2], p, used_exact);
-      return of == side ? height <= 0 : height >= 0;
-    });
+      if (of == side ? height > 0 : height < 0) return false;
+      is_in_plane = is_in_plane && height == 0;
+    }
+    return of == side || !is_in_plane || !input_.a_is_solid || !input_.b_is_solid ||
+           dot(unit_normal(plane), unit_normal(corners)) <= 0;
   };
   return std::all_of(members.begin(), members.end(),
                      [&](std::uint32_t i) { return is_on_its_side(i, 1 - side) && is_on_its_side(i, side); });

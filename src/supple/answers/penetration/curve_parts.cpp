@@ -127,12 +127,17 @@ void CurveParts::look_along(const Vec3d& normal) {
 }
 
 double CurveParts::way_between(const TrianglePoints& a, const TrianglePoints& b) const {
-  TrianglePoints seen_a, seen_b;
-  for (std::size_t i = 0; i < 3; ++i) {
-    seen_a[i] = seen(a[i]);
-    seen_b[i] = seen(b[i]);
+  return longest_way(seen(a), seen(b));
+}
+
+Vec3d CurveParts::middle_of(const TrianglePoints& p, const TrianglePoints& q) const {
+  Vec3d sum;
+  double count = 0;
+  for (const Vec3d& corner : SharedPolygon(seen(p), seen(q))) {
+    sum += corner;
+    ++count;
   }
-  return longest_way(seen_a, seen_b);
+  return (1 / count) * (sum.x * axes_[0] + sum.y * axes_[1] + sum.z * axes_[2]);
 }
 
 double CurveParts::way_along(const Vec3d& normal, double limit) {

@@ -43,6 +43,8 @@ class CurveParts {
   void look_along(const Vec3d& normal);
   /// After `look_along`: the longest way between two triangles; minus infinity where there is none.
   double way_between(const TrianglePoints& a, const TrianglePoints& b) const;
+  /// A point of triangle p in the middle of what it shares with q as seen along the vector. They share some.
+  Vec3d middle_of(const TrianglePoints& p, const TrianglePoints& q) const;
 
   /// After `way_along`: whether a triangle of the other side is straight ahead of a point of a, or straight
   /// behind a point of b, within the way. Points on borders count.
@@ -83,6 +85,7 @@ class CurveParts {
   void split(std::size_t side, std::uint32_t node);
   void project(std::size_t side);
   Vec3d seen(const Vec3d& p) const { return {dot(axes_[0], p), dot(axes_[1], p), dot(axes_[2], p)}; }
+  TrianglePoints seen(const TrianglePoints& p) const { return {seen(p[0]), seen(p[1]), seen(p[2])}; }
 
   std::array<std::vector<Part>, 2> triangles_;
   std::array<std::vector<Projected>, 2> projected_;

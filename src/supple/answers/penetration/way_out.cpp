@@ -140,12 +140,30 @@ void WayOut::try_corners(std::span<const WayCandidate> candidates) {
   }
 }
 
+/// Where the longest way begins in the front of a, or ends in the back of b, as seen along the normal, adds
+/// the other side of the solid there. Returns whether it was missing.
+bool WayOut::add_other_sides(const Vec3d& normal) {
+  const CurveParts::Ends ends = parts_.ends();
+  const std::size_t before = triangle_count();
+  for (std::size_t side = 0; side < 2; ++side) {
+    const TrianglePoints own = scaled_corners(side, ends[side]),
+                         other = scaled_corners(1 - side, ends[1 - side]);
+    const double sign = side == 0 ? -1 : 1, outwards = sign * dot(unit_normal(own), normal);
+    if (!bodies_[side].is_solid || !(outwards < 0)) continue;
+    constexpr double inwards = 0x1p-24;  // off the surface
+    const Vec3d start = parts_.middle_of(own, other) + sign * inwards * normal;
+    cast(1 - side, (1 / scale_) * (start + origin_), normal, true);
+  }
+  return triangle_count() > before;
+}
+
 /// The depth after which the surfaces around the contact do not overlap either: from the ends of the longest
 /// way, it goes on to neighbours as long as they have a longer way. Above the common part of two convex
 /// bodies, their distance along the normal is concave, so this finds their largest one.
 double WayOut::depth_of_surfaces(const Way& way) {
   if (bodies_[0].queried == nullptr) return way.depth;
   double longest = parts_.way_along(way.normal);
+  if (longest != none && add_other_sides(way.normal)) longest = parts_.way_along(way.normal);
   if (longest == none) return way.depth;
   CurveParts::Ends ends = parts_.ends();
   for (bool is_longer = true; is_longer;) {

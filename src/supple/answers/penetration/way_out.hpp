@@ -35,6 +35,7 @@ class WayOut {
   struct Body {
     SurfaceView surface;
     const QueriedObject* queried = nullptr;
+    bool is_solid = false;
   };
   /// Starts another pair of bodies, a and b.
   void start(const Body& a, const Body& b);
@@ -73,6 +74,7 @@ class WayOut {
   double cast(std::size_t side, const Vec3d& point, const Vec3d& normal, bool is_inside);
   void try_corners(std::span<const WayCandidate> candidates);
   TrianglePoints scaled_corners(std::size_t side, std::uint32_t triangle) const;
+  bool add_other_sides(const Vec3d& normal);
   double depth_of_surfaces(const Way& way);
   double depth_without_return(const Way& way, int& parts);
   double least_depth() const;
