@@ -1,4 +1,4 @@
-#include "inspect/inspection.hpp"
+#include "supple/inspection.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -8,9 +8,11 @@
 #include "core/sort_once.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
+#include "inspect/octree_statistics.hpp"
 #include "inspect/polytope.hpp"
 #include "inspect/searched_volumes.hpp"
 #include "mesh/share_vertex.hpp"
+#include "scene/scene_implementation.hpp"
 
 namespace supple {
 namespace {
@@ -113,38 +115,6 @@ NodePairList mirrored(NodePairList list) {
   return list;
 }
 
-/// Collects the first `limit` pairs in ascending order and counts all of them.
-class FirstPairs {
- public:
-  explicit FirstPairs(std::size_t limit) : limit_(limit) {}
-
-  void add(TrianglePair pair) {
-    ++count_;
-    if (limit_ == 0) return;
-    pairs_.push_back(pair);
-    if (pairs_.size() >= 2 * limit_ + slack) drop_last();
-  }
-  std::uint64_t count() const { return count_; }
-  std::span<const TrianglePair> sorted() {
-    drop_last();
-    std::sort(pairs_.begin(), pairs_.end());
-    return pairs_;
-  }
-
- private:
-  static constexpr std::size_t slack = 1024;
-
-  void drop_last() {
-    if (pairs_.size() <= limit_) return;
-    std::nth_element(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(limit_), pairs_.end());
-    pairs_.resize(limit_);
-  }
-
-  std::size_t limit_;
-  std::uint64_t count_ = 0;
-  std::vector<TrianglePair> pairs_;
-};
-
 /// Visits the pairs of triangles of two leaves whose swept boxes overlap.
 template <class Visit>
 void for_each_moving_pair(const ObjectPairView& pair, const LeafPair& leaves, Visit&& visit) {
@@ -172,25 +142,37 @@ void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&
   }
 }
 
-}  // namespace
-
 /// Throws an error unless the object is as in the last `detect`. All of its nodes are refitted.
-const WorldObject& Inspection::refitted_object(ObjectId id, const char* call) const {
-  WorldObject& asked = world_.object(id, call);
-  if (asked.has_moved() || asked.needs_refit(question().shapes())) {
+const WorldObject& refitted_object(const World& world, const Question& question, ObjectId id,
+                                   const char* call) {
+  WorldObject& asked = world.object(id, call);
+  if (asked.has_moved() || asked.needs_refit(question.shapes())) {
     fail(std::string(call) + ": " + asked.options.name +
          " was moved since anything was detected; call detect first");
   }
-  if (question().shapes().lazy) asked.update_all_children(world_.parallel);
+  if (question.shapes().lazy) asked.update_all_children(world.parallel);
   return asked;
 }
 
-std::vector<OctreeCell> Inspection::octree_cells(ObjectId id, std::optional<std::uint32_t> level) const {
-  const WorldObject& asked = refitted_object(id, "cells");
+}  // namespace
+
+ObjectPairView search_view(const World& world, const Question& question, const ContactJob& job) {
+  OctreeView a = question.view(world[job.a]), b = question.view(world[job.b]);
+  a.culled = b.culled = nullptr;
+  if (question.searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
+  const double separation = question.is_continuous()
+                                ? question.separation_of(world[job.a], world[job.b])
+                                : reach_of_margins(world[job.a].options.margin, world[job.b].options.margin);
+  return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
+}
+
+std::vector<OctreeCell> SceneInspector::cells(ObjectId id, std::optional<std::uint32_t> level) const {
+  const auto& inside = SceneAccess::of(*scene_);
+  const WorldObject& asked = refitted_object(inside.world, inside.detection.question(), id, "cells");
   const std::span<const OctreeNode> nodes = asked.octree().nodes();
   std::vector<OctreeCell> cells;
   if (nodes.empty()) return cells;
-  const CellReader reader(question().view(asked), asked);
+  const CellReader reader(inside.detection.question().view(asked), asked);
   if (level == 0) return {reader.root()};
   for (std::uint32_t n = 0; n < nodes.size(); ++n) {
     const std::uint32_t here = nodes[n].level + 1u;
@@ -203,23 +185,26 @@ std::vector<OctreeCell> Inspection::octree_cells(ObjectId id, std::optional<std:
   return cells;
 }
 
-OctreeCell Inspection::leaf(ObjectId id, std::uint32_t triangle) const {
-  const WorldObject& asked = refitted_object(id, "leaf");
+OctreeCell SceneInspector::leaf(ObjectId id, std::uint32_t triangle) const {
+  const auto& inside = SceneAccess::of(*scene_);
+  const WorldObject& asked = refitted_object(inside.world, inside.detection.question(), id, "leaf");
   check_triangle(asked, triangle, "leaf");
-  return CellReader(question().view(asked), asked).leaf_with(asked.octree().octree_triangle(triangle));
+  return CellReader(inside.detection.question().view(asked), asked)
+      .leaf_with(asked.octree().octree_triangle(triangle));
 }
 
-NodePairList Inspection::node_pairs(ObjectId id_a, ObjectId id_b) const {
-  const WorldObject &a = world_.object(id_a, "node_pairs"), &b = world_.object(id_b, "node_pairs");
-  if (!is_current_) fail("node_pairs: nothing was detected at the present positions; call detect first");
+NodePairList SceneInspector::node_pairs(ObjectId id_a, ObjectId id_b) const {
+  const World& world = SceneAccess::of(*scene_).world;
+  const WorldObject &a = world.object(id_a, "node_pairs"), &b = world.object(id_b, "node_pairs");
+  const Detection& detection = detected(*scene_, "node_pairs").detection;
   if (id_b < id_a) return mirrored(node_pairs(id_b, id_a));
   NodePairList list;
-  const bool is_compared = std::any_of(jobs().begin(), jobs().end(), [&](const ContactJob& job) {
+  const bool is_compared = std::ranges::any_of(detection.pairs().jobs(), [&](const ContactJob& job) {
     return job.a == id_a.index && job.b == id_b.index;
   });
   if (!is_compared || a.octree().nodes().empty() || b.octree().nodes().empty()) return list;
 
-  const ObjectPairView view = search_view(ContactJob{id_a.index, id_b.index});
+  const ObjectPairView view = search_view(world, detection.question(), {id_a.index, id_b.index});
   CollidingCells cells_a(view.a, a), cells_b(view.b, b);
   std::vector<std::pair<CollidingCells::Name, CollidingCells::Name>> names;
   const auto finish_level = [&] {
@@ -251,42 +236,68 @@ NodePairList Inspection::node_pairs(ObjectId id_a, ObjectId id_b) const {
   return list;
 }
 
-std::uint32_t Inspection::octree_depth(ObjectId id) const {
-  const std::span<const OctreeNode> nodes = world_.object(id, "octree_depth").octree().nodes();
+std::uint32_t SceneInspector::octree_depth(ObjectId id) const {
+  const WorldObject& object = SceneAccess::of(*scene_).world.object(id, "octree_depth");
+  const std::span<const OctreeNode> nodes = object.octree().nodes();
   return nodes.empty() || nodes[0].child_count == 1 ? 0 : nodes.back().level + 1u;
 }
 
-ObjectPairView Inspection::search_view(const ContactJob& job) const {
-  OctreeView a = question().view(world_[job.a]), b = question().view(world_[job.b]);
-  a.culled = b.culled = nullptr;
-  if (question().searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
-  const double separation =
-      question().is_continuous() ? question().separation_of(world_[job.a], world_[job.b]) : reach_of(job);
-  return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
+OctreeStatistics SceneInspector::octree_statistics(ObjectId id) const {
+  const World& world = SceneAccess::of(*scene_).world;
+  WorldObject& asked = world.object(id, "octree_statistics");
+  asked.update_all_children(world.parallel);
+  return supple::octree_statistics(asked);
+}
+
+Aabb SceneInspector::bounds(ObjectId id) const {
+  return SceneAccess::of(*scene_).world.object(id, "bounds").box();
+}
+
+std::vector<SceneRegion> SceneInspector::regions() const {
+  return SceneAccess::of(*scene_).detection.pairs().finder().regions();
+}
+
+std::vector<SceneRegion> SceneInspector::regions(ObjectId id) const {
+  const auto& inside = SceneAccess::of(*scene_);
+  inside.world.object(id, "regions");
+  return inside.detection.pairs().finder().regions(id.index);
 }
 
 /// Jobs are in canonical order.
-CandidateList Inspection::candidates(std::size_t limit) const {
-  if (!is_current_) fail("candidates: nothing was detected at the present positions; call detect first");
+CandidateList SceneInspector::candidates(std::size_t limit) const {
+  const auto& inside = detected(*scene_, "candidates");
+  const World& world = inside.world;
   CandidateList list;
   const auto traversal = std::make_unique<Traversal>();
-  for (const ContactJob& job : jobs()) {
-    const std::span<const std::uint32_t> ids_a = world_[job.a].octree().triangle_ids();
-    const std::span<const std::uint32_t> ids_b = world_[job.b].octree().triangle_ids();
-    const std::uint32_t faces_a = world_[job.a].face_count();
-    const std::uint32_t faces_b = world_[job.b].face_count();
-    FirstPairs pairs(limit - list.pairs.size());
-    for_each_candidate(*traversal, search_view(job), [&](const TrianglePair& pair) {
-      TrianglePair named{ids_a[pair.a], ids_b[pair.b]};
-      if (named.a >= faces_a || named.b >= faces_b) return;  // an edge or a point of no triangle
+  std::vector<TrianglePair> first;  // as a heap
+  for (const ContactJob& job : inside.detection.pairs().jobs()) {
+    const WorldObject &a = world[job.a], &b = world[job.b];
+    const std::size_t most = limit - list.pairs.size();
+    first.clear();
+    const ObjectPairView view = search_view(world, inside.detection.question(), job);
+    for_each_candidate(*traversal, view, [&](const TrianglePair& pair) {
+      TrianglePair named{a.octree().triangle_ids()[pair.a], b.octree().triangle_ids()[pair.b]};
+      if (named.a >= a.face_count() || named.b >= b.face_count())
+        return;  // an edge or a point of no triangle
       if (job.a == job.b && named.a > named.b) std::swap(named.a, named.b);
-      pairs.add(named);
+      ++list.total;
+      first.push_back(named);
+      std::push_heap(first.begin(), first.end());
+      if (first.size() <= most) return;
+      std::pop_heap(first.begin(), first.end());
+      first.pop_back();
     });
-    list.total += pairs.count();
-    for (const TrianglePair& pair : pairs.sorted())
-      list.pairs.push_back({world_.id_of(job.a), world_.id_of(job.b), pair.a, pair.b});
+    std::sort_heap(first.begin(), first.end());
+    for (const TrianglePair& pair : first)
+      list.pairs.push_back({world.id_of(job.a), world.id_of(job.b), pair.a, pair.b});
   }
   return list;
+}
+
+std::string SceneInspector::validate() const {
+  const auto& inside = SceneAccess::of(*scene_);
+  const std::string wrong = inside.world.validate();
+  return wrong.empty() ? inside.detection.pairs().finder().validate() : wrong;
 }
 
 std::vector<std::array<Vec3d, 2>> edges_of(std::span<const Slab> slabs) {
