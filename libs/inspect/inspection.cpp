@@ -17,6 +17,14 @@
 namespace supple {
 namespace {
 
+/// A cell by its place in the octree: 0 for the root, otherwise 1 plus eight times the node plus the child.
+/// These names ascend by level and number.
+using CellName = std::uint64_t;
+
+CellName name_of(const OctreeView& view, std::uint32_t node, int child) {
+  return is_one_leaf(view) ? 0 : 1 + node_width * CellName{node} + static_cast<CellName>(child);
+}
+
 /// The cells of an octree, where the object is now.
 class CellReader {
  public:
@@ -48,6 +56,12 @@ class CellReader {
     return cell;
   }
 
+  OctreeCell named(CellName name) const {
+    return name == 0 ? root()
+                     : cell(static_cast<std::uint32_t>((name - 1) / node_width),
+                            static_cast<int>((name - 1) % node_width));
+  }
+
   /// The leaf with a triangle, numbered in octree order.
   OctreeCell leaf_with(std::uint32_t triangle) const {
     std::uint32_t n = 0;
@@ -63,57 +77,6 @@ class CellReader {
   OctreeView view_;
   const WorldObject* object_;
 };
-
-/// The cells of one side of a `NodePairList`. A cell is named by its place in the octree: 0 for the root,
-/// otherwise 1 plus eight times the node plus the child. These names ascend by level and number.
-class CollidingCells {
- public:
-  using Name = std::uint64_t;
-
-  CollidingCells(const OctreeView& view, const WorldObject& object)
-      : reader_(view, object), is_one_leaf_(is_one_leaf(view)) {}
-
-  Name add_root() { return add(0); }
-  Name add(std::uint32_t node, int child) {
-    return add(is_one_leaf_ ? 0 : 1 + node_width * Name{node} + static_cast<Name>(child));
-  }
-  /// Call after all cells were added, and before `place_of`.
-  std::vector<OctreeCell> list() {
-    sort_once(names_);
-    std::vector<OctreeCell> cells;
-    for (const Name name : names_)
-      cells.push_back(name == 0 ? reader_.root()
-                                : reader_.cell(static_cast<std::uint32_t>((name - 1) / node_width),
-                                               static_cast<int>((name - 1) % node_width)));
-    return cells;
-  }
-  std::uint32_t place_of(Name name) const {
-    return static_cast<std::uint32_t>(std::lower_bound(names_.begin(), names_.end(), name) - names_.begin());
-  }
-
- private:
-  Name add(Name name) {
-    names_.push_back(name);
-    return name;
-  }
-
-  CellReader reader_;
-  bool is_one_leaf_;
-  std::vector<Name> names_;
-};
-
-/// Exchanges both objects.
-NodePairList mirrored(NodePairList list) {
-  std::swap(list.nodes_a, list.nodes_b);
-  for (NodePairList::Pair& pair : list.pairs) std::swap(pair.a, pair.b);
-  for (std::uint32_t level = 0; level < list.level_count(); ++level) {
-    const auto at = [&](std::uint32_t k) {
-      return list.pairs.begin() + static_cast<std::ptrdiff_t>(list.level_begin[k]);
-    };
-    std::sort(at(level), at(level + 1));
-  }
-  return list;
-}
 
 /// Visits the pairs of triangles of two leaves whose swept boxes overlap.
 template <class Visit>
@@ -197,22 +160,25 @@ NodePairList SceneInspector::node_pairs(ObjectId id_a, ObjectId id_b) const {
   const World& world = SceneAccess::of(*scene_).world;
   const WorldObject &a = world.object(id_a, "node_pairs"), &b = world.object(id_b, "node_pairs");
   const Detection& detection = detected(*scene_, "node_pairs").detection;
-  if (id_b < id_a) return mirrored(node_pairs(id_b, id_a));
   NodePairList list;
-  const bool is_compared = std::ranges::any_of(detection.pairs().jobs(), [&](const ContactJob& job) {
-    return job.a == id_a.index && job.b == id_b.index;
+  const auto [low, high] = std::minmax(id_a, id_b);
+  const ContactJob job{low.index, high.index};
+  const bool is_compared = std::ranges::any_of(detection.pairs().jobs(), [&](const ContactJob& compared) {
+    return compared.a == job.a && compared.b == job.b;
   });
   if (!is_compared || a.octree().nodes().empty() || b.octree().nodes().empty()) return list;
 
-  const ObjectPairView view = search_view(world, detection.question(), {id_a.index, id_b.index});
-  CollidingCells cells_a(view.a, a), cells_b(view.b, b);
-  std::vector<std::pair<CollidingCells::Name, CollidingCells::Name>> names;
+  const ObjectPairView view = search_view(world, detection.question(), job);
+  std::vector<std::array<CellName, 2>> names;  // of the cells of a and b
+  const auto add = [&](CellName low_name, CellName high_name) {
+    names.push_back(id_b < id_a ? std::array{high_name, low_name} : std::array{low_name, high_name});
+  };
   const auto finish_level = [&] {
     std::sort(names.begin() + static_cast<std::ptrdiff_t>(list.level_begin.back()), names.end());
     list.level_begin.push_back(names.size());
   };
   // The broad phase found that the roots overlap. Two octrees of one leaf each have only this pair.
-  names.emplace_back(cells_a.add_root(), cells_b.add_root());
+  add(0, 0);
   finish_level();
   std::vector<NodePair> nodes;
   if (!is_one_leaf(view.a) || !is_one_leaf(view.b)) nodes.emplace_back();
@@ -223,16 +189,25 @@ NodePairList SceneInspector::node_pairs(ObjectId id_a, ObjectId id_b) const {
     nodes.clear();
     if (children.empty()) break;
     for (const ChildPair& at : children) {
-      names.emplace_back(cells_a.add(at.node_a, at.child_a), cells_b.add(at.node_b, at.child_b));
+      add(name_of(view.a, at.node_a, at.child_a), name_of(view.b, at.node_b, at.child_b));
       if (const auto below = nodes_below(view, at)) nodes.push_back(*below);
     }
     finish_level();
   }
-  list.nodes_a = cells_a.list();
-  list.nodes_b = cells_b.list();
-  list.pairs.reserve(names.size());
-  for (const auto& [name_a, name_b] : names)
-    list.pairs.push_back({cells_a.place_of(name_a), cells_b.place_of(name_b)});
+  list.pairs.resize(names.size());
+  const auto list_cells = [&](std::size_t side, const WorldObject& object, std::vector<OctreeCell>& cells,
+                              std::uint32_t NodePairList::Pair::*place) {
+    std::vector<CellName> of_side;
+    for (const auto& pair : names) of_side.push_back(pair[side]);
+    sort_once(of_side);
+    const CellReader reader(&object == &world[job.a] ? view.a : view.b, object);
+    for (const CellName name : of_side) cells.push_back(reader.named(name));
+    for (std::size_t i = 0; i < names.size(); ++i)
+      list.pairs[i].*place =
+          static_cast<std::uint32_t>(std::ranges::lower_bound(of_side, names[i][side]) - of_side.begin());
+  };
+  list_cells(0, a, list.nodes_a, &NodePairList::Pair::a);
+  list_cells(1, b, list.nodes_b, &NodePairList::Pair::b);
   return list;
 }
 
