@@ -786,7 +786,7 @@ CONTRACTS = {
     'value_of_word':
         'The value of a word; nothing when no value has this word.',
     'verify':
-        'Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`; exact boxes, sorted along an axis or in a tree, exclude pairs that are apart. Quadratic at worst: about a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of contacts. A stop ends it after the pair of objects that it compares.',
+        'Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`; a tree of exact boxes excludes pairs that are apart. Quadratic at worst: about a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of contacts. A stop ends it after the pair of objects that it compares.',
     'verify_any_contact':
         'See `verify_any_contact` in supple/verify.hpp.',
     'verify_cast':
