@@ -1,7 +1,5 @@
 // STL, text or binary: triangles of three points, in text also polygons. Equal points become one vertex.
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
