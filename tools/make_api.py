@@ -13,7 +13,7 @@ entity. `default` and `value` are as spelled, types as libclang prints them. `do
 with `///`, one line for each paragraph; it is absent where the header has none. `follows` marks a
 declaration without a comment in the line after another one, whose comment may be for both. Left out are the
 namespace `detail`, what is private, explicit specialisations (such as `Description<...>` and `words<...>`),
-defaulted comparisons and destructors.
+macros that their header undefines, defaulted comparisons and destructors.
 """
 
 import json
@@ -185,7 +185,7 @@ def entities_of(header, cursor, scope=""):
     """The entities of one declaration, none when it is not public."""
     name = scope + cursor.spelling
     begin = header.text(cursor.extent.start.offset, cursor.location.offset)
-    if cursor.spelling == "detail" or begin.startswith("template <>"):
+    if cursor.spelling == "detail" or begin.startswith("template <>") or f"#undef {cursor.spelling}" in header.lines:
         return []
     if cursor.kind == Kind.NAMESPACE:
         inner = "" if name == "supple" else name + "::"

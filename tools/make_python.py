@@ -82,16 +82,16 @@ class Described:
                       if entity["kind"] == "enum"}
         self.words = {name.split("::", 1)[-1] if name.startswith("viewer::") else name: re.findall(r'"([^"]+)"', words)
                       for name, words in re.findall(r"constexpr std::array words<([\w:]+)>\{(.*?)\}", text, re.DOTALL)}
-        self.blocks = dict(re.findall(r"\nstruct Description<(?:viewer::)?([\w:]+)> \{(.*?)\n\};", text, re.DOTALL))
+        self.blocks = dict(re.findall(r"\nstruct Description<(?:viewer::)?([\w:]+)> ([:{].*?)\n\};", text, re.DOTALL))
 
     def members(self, struct):
         """The described members of a structure: (name, type, key, documentation, words for truth values)."""
         block, fields = self.blocks[struct], {each["name"]: each for each in self.structs[struct]["fields"]}
         found = []
         # A member begins with its name: `.name = "x"`, or `"x", &Struct::x` as arguments of a function.
-        parts = re.split(r'\.name = "(?=\w+",)|(?=\(\s*"\w+",\s*&)|(?=visitor,\s*"\w+",)', block)
+        parts = re.split(r'\.name = "(?=\w+",)|(?=\(\s*"\w+",\s*&)', block)
         for part in parts[1:]:
-            key = re.match(r'(?:\(\s*|visitor,\s*)?"?(\w+)"', part)
+            key = re.match(r'(?:\(\s*)?"?(\w+)"', part)
             member = re.search(r"&\w+(?:::\w+)*::(\w+)", part)
             if not key or not member or member[1] not in fields:
                 continue
@@ -251,8 +251,8 @@ def lists_class(described, records):
 
 def generate_types(root, api):
     described = Described(root, api)
-    records = [name for name in described.blocks if name not in OPTION_STRUCTS and "Stats" not in name
-               and name in described.structs and f"visit_field(visitor" in described.blocks[name]]
+    records = [name for name in described.blocks if name not in OPTION_STRUCTS and "Stat" not in name
+               and name in described.structs and described.blocks[name].startswith(":")]
     enums = sorted({each.replace("::", "") for each in re.findall(
         r"\b[A-Z]\w+(?:::\w+)?(?= \| Literal)", "\n".join(options_class(described, s) for s in OPTION_STRUCTS))})
     stats = {key: ("float" if type_ == "double" else "int" if type_ in SCALARS else "str", doc)

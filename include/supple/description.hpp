@@ -202,17 +202,25 @@ struct Field {
   constexpr bool has_truth_words() const { return truth_words[0] != nullptr; }
 };
 
-/// Visits a member of a record; `key` is its name for users.
-template <class Visitor, class Struct, class Value>
-constexpr void visit_field(Visitor& visitor, const char* key, Value Struct::*member, const char* doc,
-                           Role role = {}, const char* unit = "") {
-  visitor(Field<Struct, Value>{.name = key, .member = member, .doc = doc, .unit = unit, .role = role});
-}
-
 /// `name` is the name of the structure. `visit(visitor)` calls `visitor(field)` for each member, in the order
 /// of the structure.
 template <class Struct>
 struct Description;
+
+/// The base of the description of a record. Its `fields(field)` calls `field(key, member, doc, role, unit)`
+/// for each member; `key` is its name for users.
+template <class Struct>
+struct RecordDescription {
+  using Row = Struct;  ///< the record
+  /// Calls `visitor(field)` for each member.
+  template <class Visitor>
+  static constexpr void visit(Visitor&& visitor) {
+    Description<Row>::fields([&]<class Value>(const char* key, Value Row::*member, const char* doc,
+                                              Role role = {}, const char* unit = "") {
+      visitor(Field<Row, Value>{.name = key, .member = member, .doc = doc, .unit = unit, .role = role});
+    });
+  }
+};
 
 /// A structure that has a `Description`.
 template <class Struct>

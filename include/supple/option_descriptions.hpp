@@ -55,8 +55,7 @@ inline constexpr std::array words<Neighbours>{"skip", "exact"};
 template <>
 struct Description<ImpactOptions> {
   static constexpr const char* name = "ImpactOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = ImpactOptions;
     visitor(
         Field<Options, double>{.name = "min_separation",
@@ -87,8 +86,7 @@ struct Description<ImpactOptions> {
 template <>
 struct Description<ObjectOctreeOptions> {
   static constexpr const char* name = "ObjectOctreeOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = ObjectOctreeOptions;
     visitor(Field<Options, std::uint32_t>{.name = "max_level",
                                           .member = &Options::max_level,
@@ -122,8 +120,7 @@ struct Description<ObjectOctreeOptions> {
 template <>
 struct Description<SceneOctreeOptions> {
   static constexpr const char* name = "SceneOctreeOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = SceneOctreeOptions;
     visitor(Field<Options, std::uint32_t>{
         .name = "max_level",
@@ -177,8 +174,7 @@ struct Description<SceneOctreeOptions> {
 template <>
 struct Description<ObjectOptions> {
   static constexpr const char* name = "ObjectOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = ObjectOptions;
     visitor(Field<Options, std::string>{.name = "name",
                                         .member = &Options::name,
@@ -235,8 +231,7 @@ struct Description<ObjectOptions> {
 template <>
 struct Description<ComparisonOptions> {
   static constexpr const char* name = "ComparisonOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = ComparisonOptions;
     visitor(Field<Options, SphereFit>{.name = "sphere_fit",
                                       .member = &Options::sphere_fit,
@@ -265,8 +260,7 @@ struct Description<ComparisonOptions> {
 template <>
 struct Description<SceneOptions> {
   static constexpr const char* name = "SceneOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = SceneOptions;
     visitor(Field<Options, BoundingVolume>{
         .name = "bounding_volume",
@@ -330,8 +324,7 @@ struct Description<SceneOptions> {
 template <>
 struct Description<StepOptions> {
   static constexpr const char* name = "StepOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = StepOptions;
     visitor(Field<Options, double>{
         .name = "keep",
@@ -344,8 +337,7 @@ struct Description<StepOptions> {
 template <>
 struct Description<BroadPhaseOptions> {
   static constexpr const char* name = "BroadPhaseOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = BroadPhaseOptions;
     visitor(Field<Options, BroadPhaseMethod>{
         .name = "method", .member = &Options::method, .doc = "How overlapping pairs are found"});

@@ -33,8 +33,7 @@ inline constexpr std::array words<ManifoldSource>{"curve", "pairs"};
 template <>
 struct Description<StepStats> {
   static constexpr const char* name = "StepStats";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Stats = StepStats;
     const auto seconds = [&](const char* field, double Stats::*member, const char* doc) {
       visitor(Field<Stats, double>{
@@ -96,8 +95,7 @@ struct Description<StepStats> {
 template <>
 struct Description<BroadPhaseStats> {
   static constexpr const char* name = "BroadPhaseStats";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Stats = BroadPhaseStats;
     const auto count = [&](const char* field, std::uint64_t Stats::*member, const char* unit,
                            const char* doc) {
@@ -119,8 +117,7 @@ struct Description<BroadPhaseStats> {
 template <>
 struct Description<PolygonCounts> {
   static constexpr const char* name = "PolygonCounts";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     const auto count = [&](const char* field, std::uint64_t PolygonCounts::*member, const char* doc) {
       visitor(Field<PolygonCounts, std::uint64_t>{
           .name = field, .member = member, .doc = doc, .unit = "polygons"});

@@ -2,18 +2,16 @@
 
 #include "comparison/broad_phase/sweep_search.hpp"
 #include "comparison/builds/builds.hpp"
-#include "comparison/volumes/kdops.hpp"
-#include "comparison/volumes/oriented_boxes.hpp"
-#include "comparison/volumes/spheres.hpp"
+#include "comparison/volumes/volumes.hpp"
 #include "octree/comparison_methods.hpp"
 
 namespace supple {
 namespace {
 
 std::unique_ptr<NodeVolumes> make_node_volumes(BoundingVolume kind, SphereFit fit, std::size_t nodes) {
-  if (kind == BoundingVolume::sphere) return std::make_unique<Spheres>(fit, nodes);
-  if (kind == BoundingVolume::obb) return std::make_unique<OrientedBoxes>(nodes);
-  return std::make_unique<Kdops>(kind, nodes);
+  if (kind == BoundingVolume::sphere) return make_spheres(fit, nodes);
+  if (kind == BoundingVolume::obb) return make_oriented_boxes(nodes);
+  return make_kdops(kind, nodes);
 }
 
 OctreeTopology build_other_octree(const PositionsView& positions, std::span<const Triangle> triangles,
@@ -32,6 +30,27 @@ std::unique_ptr<PairSearch> make_pair_search(BroadPhaseMethod method) {
 void use_comparison_methods() {
   static constexpr ComparisonMethods methods{make_node_volumes, build_other_octree, make_pair_search};
   set_comparison_methods(methods);
+}
+
+SceneOptions with_method_of_2007(SceneOptions options) {
+  if (options.bounding_volume != BoundingVolume::sphere) options.bounding_volume = BoundingVolume::aabb;
+  options.broad_phase = BroadPhaseMethod::octree;
+  options.scene_octree = {.max_level = 2,
+                          .expand_at = 2,
+                          .region_sphere_test = RegionSphereTest::grown_box,
+                          .expand_for_large_objects = true,
+                          .min_level = 1,
+                          .root = options.scene_octree.root};
+  options.contact_points = false;
+  options.comparison = {.sphere_fit = SphereFit::vertices,
+                        .colliding_vertices = true,
+                        .descent = Descent::one_side_first,
+                        .lazy_refit = true};
+  return options;
+}
+
+ObjectOctreeOptions octree_of_2007() {
+  return {.leaf_size = 1, .build = ObjectOctreeBuild::regular, .rebuild_degraded = false};
 }
 
 }  // namespace supple

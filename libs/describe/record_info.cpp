@@ -1,5 +1,6 @@
 #include "supple/record_info.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -14,18 +15,9 @@ std::uint64_t number_of(const FieldInfo& field, const std::byte* row, std::size_
     std::memcpy(&number, from, sizeof number);
     return number;
   };
-  switch (field.scalar) {
-    case ScalarType::boolean:
-    case ScalarType::uint8:
-      return as(std::uint8_t{});
-    case ScalarType::uint32:
-      return as(std::uint32_t{});
-    case ScalarType::uint64:
-      return as(std::uint64_t{});
-    case ScalarType::float64:
-      break;
-  }
-  fail(std::string(field.name) + " is no whole number");
+  if (field.scalar == ScalarType::float64) fail(std::string(field.name) + " is no whole number");
+  const std::size_t size = size_of(field.scalar);
+  return size == 1 ? as(std::uint8_t{}) : size == 4 ? as(std::uint32_t{}) : as(std::uint64_t{});
 }
 
 double real_number(const FieldInfo& field, const std::byte* row, std::size_t place) {
@@ -61,10 +53,9 @@ const std::vector<ListInfo>& list_infos() {
 }
 
 std::size_t place_of_list(std::string_view name) {
-  for (std::size_t i = 0; i < list_infos().size(); ++i) {
-    if (list_infos()[i].name == name) return i;
-  }
-  fail("a result has no list " + std::string(name));
+  const auto found = std::ranges::find(list_infos(), name, &ListInfo::name);
+  if (found == list_infos().end()) fail("a result has no list " + std::string(name));
+  return static_cast<std::size_t>(found - list_infos().begin());
 }
 
 void set_rows(DetectResult& result, std::span<const ListRows> lists) {

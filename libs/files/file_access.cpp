@@ -1,6 +1,5 @@
 #include "files/file_access.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -8,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/quotes.hpp"
+#include "files/text_scanner.hpp"
 
 namespace supple {
 namespace {
@@ -40,11 +40,7 @@ std::string shown(const std::filesystem::path& path) {
 }
 
 std::string lower_case_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
+  return lower_case(path.extension().string());
 }
 
 void check_readable(const std::filesystem::path& path) {
@@ -56,17 +52,13 @@ std::string read_file(const std::filesystem::path& path) {
   std::error_code unknown_size;
   const auto expected_size = std::filesystem::file_size(path, unknown_size);
   // One byte more than expected, so that the end of the file shows without growing the buffer.
-  std::size_t chunk = unknown_size ? 65536 : static_cast<std::size_t>(expected_size) + 1;
-  std::string bytes;
-  for (std::size_t size = 0;; chunk = std::max(chunk, size)) {
-    bytes.resize(size + chunk);
-    const std::size_t count = std::fread(bytes.data() + size, 1, chunk, file.get());
-    size += count;
-    if (count < chunk) {
-      if (std::ferror(file.get())) fail("cannot read " + shown(path) + ": " + reason());
-      bytes.resize(size);
-      return bytes;
-    }
+  std::string bytes(unknown_size ? 65536 : static_cast<std::size_t>(expected_size) + 1, 0);
+  for (std::size_t size = 0;; bytes.resize(2 * size)) {
+    size += std::fread(bytes.data() + size, 1, bytes.size() - size, file.get());
+    if (size == bytes.size()) continue;
+    if (std::ferror(file.get())) fail("cannot read " + shown(path) + ": " + reason());
+    bytes.resize(size);
+    return bytes;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <cstdint>
 #include <string>
 
@@ -17,9 +18,18 @@ const char* parse_double(const char* first, const char* last, double& value);
 const char* parse_integer(const char* first, const char* last, std::int64_t& value);
 
 /// Appends the shortest digits that `parse_double` reads back to the same value (without the payload of a
-/// NaN).
-void append_double(std::string& text, double value);
+/// NaN), or an integer.
+template <class Number>
+void append_number(std::string& text, Number value) {
+  char digits[32];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
 
-void append_integer(std::string& text, std::uint64_t value);
+/// Appends numbers with blanks between them, and the end of the line.
+template <class... Numbers>
+void append_line(std::string& text, Numbers... numbers) {
+  ((append_number(text, numbers), text += ' '), ...);
+  text.back() = '\n';
+}
 
 }  // namespace supple

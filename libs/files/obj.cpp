@@ -1,7 +1,6 @@
 // Wavefront OBJ: reads faces, lines and points, and ignores texture coordinates, normals, groups,
 // materials and curves.
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -20,14 +19,14 @@ class ObjReader {
 
   TriangleMesh read() {
     for (; scanner_.skip_to_word(); scanner_.skip_line()) {
-      const std::string_view keyword = lower_case(scanner_.word());
-      if (keyword == "v") {
+      const std::string_view keyword = scanner_.word();
+      if (keyword == "v" || keyword == "V") {  // some programs write capitals
         mesh_.positions.push_back(scanner_.point());
-      } else if (keyword == "f" || keyword == "fo") {  // "fo" is the older name
+      } else if (keyword == "f" || keyword == "F" || keyword == "fo") {  // "fo" is the older name
         read_face();
-      } else if (keyword == "l") {
+      } else if (keyword == "l" || keyword == "L") {
         read_polyline();
-      } else if (keyword == "p") {
+      } else if (keyword == "p" || keyword == "P") {
         read_points();
       } else if (keyword.find('\0') != std::string_view::npos) {
         scanner_.fail_here("a zero byte; OBJ files are plain text");
@@ -45,13 +44,6 @@ class ObjReader {
     std::size_t line;
     const char* element;
   };
-
-  /// Some programs write capitals.
-  static std::string_view lower_case(std::string_view keyword) {
-    constexpr std::string_view capitals = "VFLP", keywords = "vflp";
-    const std::size_t place = keyword.size() == 1 ? capitals.find(keyword[0]) : std::string_view::npos;
-    return place == std::string_view::npos ? keyword : keywords.substr(place, 1);
-  }
 
   void read_face() {
     corners_.clear();
@@ -132,25 +124,14 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& file) {
 
 std::string write_obj(const TriangleMesh& mesh) {
   std::string text;
-  for (const Vec3d& position : mesh.positions) {
-    text += 'v';
-    for (int axis = 0; axis < 3; ++axis) {
-      text += ' ';
-      append_double(text, position[axis]);
-    }
-    text += '\n';
-  }
-  const auto append_element = [&](char keyword, std::span<const std::uint32_t> ids) {
-    text += keyword;
-    for (const std::uint32_t id : ids) {
-      text += ' ';
-      append_integer(text, std::uint64_t{id} + 1);
-    }
-    text += '\n';
+  const auto append = [&](const char* keyword, const auto&... numbers) {
+    append_line(text += keyword, numbers...);
   };
-  for (const Triangle& triangle : mesh.triangles) append_element('f', triangle);
-  for (const auto& edge : mesh.edges) append_element('l', edge);
-  for (const std::uint32_t& point : mesh.points) append_element('p', {&point, 1});
+  const auto id = [](std::uint32_t vertex) { return std::uint64_t{vertex} + 1; };
+  for (const Vec3d& p : mesh.positions) append("v ", p.x, p.y, p.z);
+  for (const auto& [i, j, k] : mesh.triangles) append("f ", id(i), id(j), id(k));
+  for (const auto& [from, to] : mesh.edges) append("l ", id(from), id(to));
+  for (const std::uint32_t point : mesh.points) append("p ", id(point));
   return text;
 }
 

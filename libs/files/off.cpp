@@ -24,7 +24,10 @@ class OffReader {
     check_counts(vertices, faces);
     mesh_.positions.reserve(vertices);
     mesh_.triangles.reserve(faces);
-    for (std::size_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
+    for (std::size_t i = 0; i < vertices; ++i, scanner_.skip_line()) {
+      if (!scanner_.skip_to_word()) fail_truncated("vertices", i, vertices);
+      mesh_.positions.push_back(scanner_.point());
+    }
     for (std::size_t i = 0; i < faces; ++i) read_face(i, faces);
     if (scanner_.skip_to_word()) {
       scanner_.fail_here("more follows after the " + std::to_string(vertices) + " vertices and " +
@@ -67,12 +70,6 @@ class OffReader {
     }
   }
 
-  void read_vertex(std::size_t i, std::size_t count) {
-    if (!scanner_.skip_to_word()) fail_truncated("vertices", i, count);
-    mesh_.positions.push_back(scanner_.point());
-    scanner_.skip_line();
-  }
-
   void read_face(std::size_t i, std::size_t count) {
     if (!scanner_.skip_to_word()) fail_truncated("faces", i, count);
     const std::int64_t corners = scanner_.integer("the number of corners");
@@ -100,20 +97,8 @@ TriangleMesh read_off(std::string_view bytes, const std::string& file) {
 std::string write_off(const TriangleMesh& mesh) {
   std::string text =
       "OFF\n" + std::to_string(mesh.positions.size()) + ' ' + std::to_string(mesh.triangles.size()) + " 0\n";
-  for (const Vec3d& position : mesh.positions) {
-    for (int axis = 0; axis < 3; ++axis) {
-      append_double(text, position[axis]);
-      text += axis < 2 ? ' ' : '\n';
-    }
-  }
-  for (const Triangle& triangle : mesh.triangles) {
-    text += '3';
-    for (const std::uint32_t id : triangle) {
-      text += ' ';
-      append_integer(text, id);
-    }
-    text += '\n';
-  }
+  for (const Vec3d& p : mesh.positions) append_line(text, p.x, p.y, p.z);
+  for (const auto& [i, j, k] : mesh.triangles) append_line(text, 3, i, j, k);
   return text;
 }
 

@@ -34,7 +34,7 @@ bool is_too_large(std::string_view number) {
 // Infinities and NaN as older Microsoft libraries print them, such as 1.#INF and -1.#IND000. Null when it is
 // none of them.
 const char* parse_microsoft(const char* first, const char* last, double& value) {
-  std::string_view rest(first, static_cast<std::size_t>(last - first));
+  std::string_view rest(first, last);
   const bool is_negative = rest.starts_with('-');
   if (is_negative) rest.remove_prefix(1);
   if (!rest.starts_with("1.#")) return nullptr;
@@ -50,11 +50,6 @@ const char* parse_microsoft(const char* first, const char* last, double& value) 
   return nullptr;
 }
 
-double beyond_range(std::string_view number) {
-  const double magnitude = is_too_large(number) ? std::numeric_limits<double>::infinity() : 0.0;
-  return number[0] == '-' ? -magnitude : magnitude;
-}
-
 }  // namespace
 
 const char* parse_double(const char* first, const char* last, double& value) {
@@ -65,7 +60,8 @@ const char* parse_double(const char* first, const char* last, double& value) {
     if (const char* special = parse_microsoft(first, last, value)) return special;
   }
   if (error == std::errc::result_out_of_range) {
-    value = beyond_range({first, static_cast<std::size_t>(end - first)});
+    const double magnitude = is_too_large({first, end}) ? std::numeric_limits<double>::infinity() : 0.0;
+    value = *first == '-' ? -magnitude : magnitude;
   }
   return end;
 }

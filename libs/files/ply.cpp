@@ -132,6 +132,7 @@ class BodyReader {
   TriangleMesh read() {
     check_counts();
     for (const Element& element : header_.elements) {
+      if (element.count == 0) continue;
       if (element.name == "vertex") {
         read_vertices(element);
       } else if (element.name == "face") {
@@ -178,22 +179,15 @@ class BodyReader {
   }
 
   void read_vertices(const Element& element) {
-    if (element.count == 0) return;
     const std::vector<int> axes = places_of({"x", "y", "z"}, element);
     mesh_.positions.resize(element.count);
     for (Vec3d& position : mesh_.positions) {
-      for (std::size_t i = 0; i < axes.size(); ++i) {
-        if (axes[i] >= 0) {
-          position[axes[i]] = body_.number(element.properties[i].type);
-        } else {
-          skip_property(element.properties[i]);
-        }
-      }
+      read_row(element, axes,
+               [&](int axis, const Property& property) { position[axis] = body_.number(property.type); });
     }
   }
 
   void read_edges(const Element& element) {
-    if (element.count == 0) return;
     const std::vector<int> ends = places_of({"vertex1", "vertex2"}, element);
     for (std::size_t i = 0; i < ends.size(); ++i) {
       if (ends[i] >= 0 && !is_integer(element.properties[i].type)) {
@@ -203,15 +197,10 @@ class BodyReader {
     }
     for (std::uint64_t number = 0; number < element.count; ++number) {
       std::array<std::uint32_t, 2> edge{};
-      for (std::size_t i = 0; i < ends.size(); ++i) {
-        const Property& property = element.properties[i];
-        if (ends[i] >= 0) {
-          edge[static_cast<std::size_t>(ends[i])] =
-              checked_vertex(body_.integer(property.type), vertex_count_, "edge", number, body_);
-        } else {
-          skip_property(property);
-        }
-      }
+      read_row(element, ends, [&](int end, const Property& property) {
+        edge[static_cast<std::size_t>(end)] =
+            checked_vertex(body_.integer(property.type), vertex_count_, "edge", number, body_);
+      });
       if (edge[0] == edge[1]) {
         body_.fail_here("edge " + std::to_string(number) + " joins vertex " + std::to_string(edge[0]) +
                         " to itself; leave it out");
@@ -242,20 +231,25 @@ class BodyReader {
   // Calls `read(number, property)` for the list of vertices of each face or strip.
   template <class Read>
   void read_lists(const Element& element, Read read) {
-    if (element.count == 0) return;
     const auto vertex_list = std::ranges::find_if(element.properties, is_vertex_list);
     if (vertex_list == element.properties.end()) {
       body_.fail_here("element " + in_quotes(element.name) +
                       " has no list 'vertex_indices' or 'vertex_index'");
     }
-    for (std::uint64_t number = 0; number < element.count; ++number) {
-      for (const Property& property : element.properties) {
-        if (&property == &*vertex_list) {
-          read(number, property);
-        } else {
-          skip_property(property);
-        }
-      }
+    std::vector<int> places(element.properties.size(), -1);
+    places[static_cast<std::size_t>(vertex_list - element.properties.begin())] = 0;
+    for (std::uint64_t number = 0; number < element.count; ++number)
+      read_row(element, places, [&](int, const Property& property) { read(number, property); });
+  }
+
+  // Calls `read(place, property)` for the properties of a row that have a place, and skips the others.
+  template <class Read>
+  void read_row(const Element& element, const std::vector<int>& places, const Read& read) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (places[i] >= 0)
+        read(places[i], element.properties[i]);
+      else
+        skip_property(element.properties[i]);
     }
   }
 

@@ -1,5 +1,7 @@
 #include "files/ply_header.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
@@ -8,11 +10,7 @@
 namespace supple::ply {
 namespace {
 
-struct ScalarTypeName {
-  std::string_view name;
-  ScalarType type;
-};
-constexpr ScalarTypeName scalar_type_names[] = {
+constexpr std::pair<std::string_view, ScalarType> scalar_type_names[] = {
     {"char", ScalarType::int8},      {"int8", ScalarType::int8},       {"uchar", ScalarType::uint8},
     {"uint8", ScalarType::uint8},    {"short", ScalarType::int16},     {"int16", ScalarType::int16},
     {"ushort", ScalarType::uint16},  {"uint16", ScalarType::uint16},   {"int", ScalarType::int32},
@@ -51,16 +49,14 @@ class HeaderReader {
  private:
   void read_format() {
     const std::string_view name = scanner_.word();
-    if (name == "ascii") {
-      header_.encoding = Encoding::text;
-    } else if (name == "binary_little_endian") {
-      header_.encoding = Encoding::little_endian;
-    } else if (name == "binary_big_endian") {
-      header_.encoding = Encoding::big_endian;
-    } else {
+    // In the order of `Encoding`.
+    constexpr std::array<std::string_view, 3> names{"ascii", "binary_little_endian", "binary_big_endian"};
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) {
       scanner_.fail_here("unknown format " + in_quotes(name) +
                          "; it may be ascii, binary_little_endian or binary_big_endian");
     }
+    header_.encoding = static_cast<Encoding>(found - names.begin());
     if (const std::string_view version = scanner_.word(); version != "1.0") {
       scanner_.fail_here("unknown version " + in_quotes(version) + " of PLY; it may be 1.0");
     }
@@ -105,8 +101,8 @@ class HeaderReader {
   }
 
   ScalarType scalar_type(std::string_view name) {
-    for (const ScalarTypeName& known : scalar_type_names) {
-      if (known.name == name) return known.type;
+    for (const auto& [known, type] : scalar_type_names) {
+      if (known == name) return type;
     }
     scanner_.fail_here("unknown type " + in_quotes(name) + " of a property");
   }

@@ -1,7 +1,5 @@
 // STL, text or binary: triangles of three points, in text also polygons. Equal points become one vertex.
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -21,13 +19,6 @@ namespace {
 // three floats, and two more bytes. All numbers are little endian.
 constexpr std::size_t header_size = 80, prologue_size = 84, facet_size = 50, normal_size = 12;
 
-bool equal_ignoring_case(std::string_view word, std::string_view lower_case) {
-  return word.size() == lower_case.size() &&
-         std::equal(word.begin(), word.end(), lower_case.begin(), [](char a, char b) {
-           return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
-         });
-}
-
 // Some programs leave the number at 0; the size tells it then.
 std::uint64_t announced_facets(std::string_view bytes) {
   const auto facets = load_scalar<std::uint32_t>(bytes.data() + header_size, std::endian::little);
@@ -44,7 +35,7 @@ bool is_text(std::string_view bytes) {
   if (is_utf16(bytes)) return true;  // the reader of text refuses it
   if (without_padding(bytes).substr(0, 1024).find('\0') != std::string_view::npos) return false;
   TextScanner scanner(bytes, "", {});
-  return scanner.skip_to_word() && equal_ignoring_case(scanner.word(), "solid");
+  return scanner.skip_to_word() && lower_case(scanner.word()) == "solid";
 }
 
 TriangleMesh read_binary(std::string_view bytes, const std::string& file) {
@@ -95,7 +86,7 @@ class StlTextReader {
     while (true) {
       const std::string_view word = next_word();
       if (ends(word, "solid")) break;
-      if (!equal_ignoring_case(word, "facet")) scanner_.fail_expected("'facet' or 'endsolid'", word);
+      if (lower_case(word) != "facet") scanner_.fail_expected("'facet' or 'endsolid'", word);
       read_facet();
     }
     scanner_.skip_line();
@@ -109,14 +100,14 @@ class StlTextReader {
     expect("loop");
     corners_.clear();
     std::string_view word = next_word();
-    for (; equal_ignoring_case(word, "vertex"); word = next_word()) {
+    for (; lower_case(word) == "vertex"; word = next_word()) {
       corners_.push_back(welder_.id_of(scanner_.point()));
     }
     if (!ends(word, "loop")) scanner_.fail_expected("'vertex' or 'endloop'", word);
     if (corners_.size() < 3) {
       scanner_.fail_here("a facet has " + std::to_string(corners_.size()) + " corners; it needs at least 3");
     }
-    expect_end("facet");
+    if (!ends(word = next_word(), "facet")) scanner_.fail_expected("'endfacet'", word);
     add_face(mesh_, fans_, corners_);
   }
 
@@ -127,19 +118,13 @@ class StlTextReader {
 
   // Some programs write "end solid" instead of "endsolid".
   bool ends(std::string_view word, std::string_view part) {
-    if (equal_ignoring_case(word, "end")) return equal_ignoring_case(scanner_.word(), part);
-    return equal_ignoring_case(word.substr(0, 3), "end") &&
-           equal_ignoring_case(word.substr(std::min<std::size_t>(word.size(), 3)), part);
-  }
-
-  void expect_end(const std::string& part) {
-    const std::string_view word = next_word();
-    if (!ends(word, part)) scanner_.fail_expected(in_quotes("end" + part), word);
+    const std::string lower = lower_case(word);
+    return lower == "end" ? lower_case(scanner_.word()) == part : lower == "end" + std::string(part);
   }
 
   void expect(std::string_view keyword) {
     const std::string_view word = next_word();
-    if (!equal_ignoring_case(word, keyword)) scanner_.fail_expected(in_quotes(keyword), word);
+    if (lower_case(word) != keyword) scanner_.fail_expected(in_quotes(keyword), word);
   }
 
   TextScanner scanner_;

@@ -76,6 +76,12 @@ class TextScanner {
   TextSyntax syntax_;
 };
 
+/// The text with small letters in place of the capitals of ASCII.
+inline std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
 inline bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }

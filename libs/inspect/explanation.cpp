@@ -4,17 +4,18 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "contact/intersection/neighbour_test.hpp"
-#include "core/error.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
-#include "inspect/inspection.hpp"
 #include "inspect/searched_volumes.hpp"
 #include "mesh/share_vertex.hpp"
 #include "queries/box_faces.hpp"
+#include "scene/scene_implementation.hpp"
 #include "supple/distance.hpp"
+#include "supple/inspection.hpp"
 #include "supple/triangle_intersection.hpp"
 
 namespace supple {
@@ -52,8 +53,7 @@ PairExplanation mirrored(PairExplanation explanation) {
 }
 
 QueryBox translated(const Aabb& box, const Vec3d& translation) {
-  return {Vec3d{box.min.x, box.min.y, box.min.z} + translation,
-          Vec3d{box.max.x, box.max.y, box.max.z} + translation};
+  return {in_double(box.min) + translation, in_double(box.max) + translation};
 }
 
 /// Sets the axis along which the boxes are furthest apart, from a to b, and the distance along it.
@@ -88,7 +88,7 @@ struct Extent {
 Extent extent_along(Vec3d direction, std::span<const Slab> box) {
   Extent extent{0, 0};
   for (const Slab& slab : box) {
-    const double along = dot(direction, Vec3d{slab.direction.x, slab.direction.y, slab.direction.z});
+    const double along = dot(direction, in_double(slab.direction));
     extent.low += along * (along > 0 ? slab.low : slab.high);
     extent.high += along * (along > 0 ? slab.high : slab.low);
   }
@@ -106,9 +106,7 @@ void set_gap(PairExplanation& explanation) {
     explanation.axis = direction * ((after > before ? 1 : -1) / length);
   };
   const std::span<const Slab> slabs_a = explanation.slabs_a, slabs_b = explanation.slabs_b;
-  const auto direction = [](const Slab& slab) {
-    return Vec3d{slab.direction.x, slab.direction.y, slab.direction.z};
-  };
+  const auto direction = [](const Slab& slab) { return in_double(slab.direction); };
   constexpr std::size_t axes_of_box = 3;
   if (slabs_a.size() > axes_of_box) {
     for (std::size_t d = 0; d < slabs_a.size(); ++d)
@@ -126,27 +124,40 @@ void set_gap(PairExplanation& explanation) {
   for (const Slab& b : slabs_b) consider_boxes(direction(b));
 }
 
-Vec3d center(const BoundingSphere& sphere, const Vec3d& translation) {
-  return Vec3d{sphere.center.x, sphere.center.y, sphere.center.z} + translation;
+/// The volumes of an object or a cell, and where they are now.
+struct Volumes {
+  Aabb box;
+  BoundingSphere sphere;
+  std::vector<Slab> slabs;  ///< translated
+  Vec3d translation{};
+};
+
+/// Sets the volumes that are apart, and the gap between them.
+void set_volumes(PairExplanation& explanation, bool are_spheres, const Volumes& a, const Volumes& b) {
+  if (are_spheres) {
+    explanation.sphere_a = moved(a.sphere, a.translation);
+    explanation.sphere_b = moved(b.sphere, b.translation);
+    set_gap(explanation,
+            (in_double(b.sphere.center) + b.translation) - (in_double(a.sphere.center) + a.translation));
+    return;
+  }
+  explanation.box_a = moved(a.box, a.translation);
+  explanation.box_b = moved(b.box, b.translation);
+  set_gap(explanation, translated(a.box, a.translation), translated(b.box, b.translation));
+  if (a.slabs.empty() || explanation.distance > 0) return;
+  explanation.slabs_a = a.slabs;
+  explanation.slabs_b = b.slabs;
+  set_gap(explanation);
 }
 
 PairExplanation objects_apart(const WorldObject& a, const WorldObject& b, BoundingVolume bounding_volume,
                               bool has_elements) {
   PairExplanation explanation{.stage = PairStage::object_volumes};
-  if (bounding_volume == BoundingVolume::sphere) {
-    explanation.sphere_a = a.sphere();
-    explanation.sphere_b = b.sphere();
-    set_gap(explanation, center(b.sphere(), {}) - center(a.sphere(), {}));
-  } else {
-    explanation.box_a = has_elements ? unclamped(a.box()) : a.box();
-    explanation.box_b = has_elements ? unclamped(b.box()) : b.box();
-    set_gap(explanation, translated(explanation.box_a, {}), translated(explanation.box_b, {}));
-    if (!has_elements && overlap(a.box(), b.box())) {
-      explanation.slabs_a = object_slabs(a.resting_view());
-      explanation.slabs_b = object_slabs(b.resting_view());
-      set_gap(explanation);
-    }
-  }
+  const auto volumes_of = [&](const WorldObject& object) -> Volumes {
+    if (has_elements) return {unclamped(object.box()), object.sphere(), {}};
+    return {object.box(), object.sphere(), object_slabs(object.resting_view())};
+  };
+  set_volumes(explanation, bounding_volume == BoundingVolume::sphere, volumes_of(a), volumes_of(b));
   return explanation;
 }
 
@@ -157,24 +168,12 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
   explanation.level_b = cell_level(pair.b, at.node_b);
   explanation.number_a = cell_number(pair.a, object_a.options.octree.arity, at.node_a, at.child_a);
   explanation.number_b = cell_number(pair.b, object_b.options.octree.arity, at.node_b, at.child_b);
-  const Vec3d &to_a = pair.a.translation, &to_b = pair.b.translation;
-  if (pair.a.volumes != nullptr && pair.a.volumes->replace_boxes()) {
-    const BoundingSphere a = child_sphere(pair.a, at.node_a, at.child_a);
-    const BoundingSphere b = child_sphere(pair.b, at.node_b, at.child_b);
-    explanation.sphere_a = moved(a, to_a);
-    explanation.sphere_b = moved(b, to_b);
-    set_gap(explanation, center(b, to_b) - center(a, to_a));
-  } else {
-    const Aabb a = child_box(pair.a, at.node_a, at.child_a), b = child_box(pair.b, at.node_b, at.child_b);
-    explanation.box_a = moved(a, to_a);
-    explanation.box_b = moved(b, to_b);
-    set_gap(explanation, translated(a, to_a), translated(b, to_b));
-    if (pair.a.volumes != nullptr && !(explanation.distance > 0)) {
-      explanation.slabs_a = child_slabs(pair.a, at.node_a, at.child_a);
-      explanation.slabs_b = child_slabs(pair.b, at.node_b, at.child_b);
-      set_gap(explanation);
-    }
-  }
+  const auto volumes_of = [](const OctreeView& view, std::uint32_t node, int child) -> Volumes {
+    return {child_box(view, node, child), child_sphere(view, node, child), child_slabs(view, node, child),
+            view.translation};
+  };
+  set_volumes(explanation, pair.a.volumes != nullptr && pair.a.volumes->replace_boxes(),
+              volumes_of(pair.a, at.node_a, at.child_a), volumes_of(pair.b, at.node_b, at.child_b));
   return explanation;
 }
 
@@ -207,13 +206,12 @@ PairExplanation triangles_apart(const TrianglePoints& a, const TrianglePoints& b
   return explanation;
 }
 
-}  // namespace
-
 /// Whether a continuous contact or a near pair of the result joins an element of one triangle to an element
 /// of the other.
-bool Inspection::are_joined(const ContactJob& job, TrianglePair triangles) const {
+bool are_joined(const World& world, const DetectResult& result, const ContactJob& job,
+                TrianglePair triangles) {
   const auto corners = [&](std::uint32_t slot, std::uint32_t triangle) {
-    const ObjectOctree& octree = world_[slot].octree();
+    const ObjectOctree& octree = world[slot].octree();
     return std::pair(octree.triangle_ids()[triangle], octree.triangles()[triangle]);
   };
   const auto a = corners(job.a, triangles.a), b = corners(job.b, triangles.b);
@@ -230,67 +228,73 @@ bool Inspection::are_joined(const ContactJob& job, TrianglePair triangles) const
     if (has(a, face_a, pair.element_a) && has(b, face_b, pair.element_b)) return true;
     return job.a == job.b && has(b, face_a, pair.element_a) && has(a, face_b, pair.element_b);
   };
-  const auto any_of_pairs = [&](std::span<const ContactGroup> groups, const auto& any) {
-    return std::ranges::any_of(groups, [&](const ContactGroup& group) {
-      return group.a == world_.id_of(job.a) && group.b == world_.id_of(job.b) && any(group);
-    });
-  };
-  return any_of_pairs(result_.continuous_groups,
-                      [&](const ContactGroup& group) {
-                        return std::ranges::any_of(
-                            result_.continuous_contacts_of(group), [&](const ContinuousContact& contact) {
-                              const auto [kind_a, kind_b] = feature_kinds(contact.kind);
-                              return joins(kind_a, kind_b, contact);
-                            });
-                      }) ||
-         any_of_pairs(result_.proximity_groups, [&](const ContactGroup& group) {
-           return std::ranges::any_of(result_.proximity_pairs_of(group), [&](const ProximityPair& pair) {
-             return joins(pair.kind_a, pair.kind_b, pair);
-           });
-         });
+  const ObjectPair ids{world.id_of(job.a), world.id_of(job.b)};
+  for (const ContactGroup& group : result.continuous_groups) {
+    if (ObjectPair{group.a, group.b} != ids) continue;
+    for (const ContinuousContact& contact : result.continuous_contacts_of(group)) {
+      const auto [kind_a, kind_b] = feature_kinds(contact.kind);
+      if (joins(kind_a, kind_b, contact)) return true;
+    }
+  }
+  for (const ContactGroup& group : result.proximity_groups) {
+    if (ObjectPair{group.a, group.b} != ids) continue;
+    for (const ProximityPair& pair : result.proximity_pairs_of(group)) {
+      if (joins(pair.kind_a, pair.kind_b, pair)) return true;
+    }
+  }
+  return false;
 }
 
 /// Follows the stages of `detect`. Triangles are in the order of the traversal.
-PairExplanation Inspection::explain_in_order(const ContactJob& job, TrianglePair triangles) const {
-  const WorldObject &a = world_[job.a], &b = world_[job.b];
+PairExplanation explain_in_order(const World& world, const Detection& detection, const DetectResult& result,
+                                 const ContactJob& job, TrianglePair triangles) {
+  const Question& question = detection.question();
+  const WorldObject &a = world[job.a], &b = world[job.b];
   const bool same_object = job.a == job.b;
-  if (same_object ? !a.options.self_collision : !world_.may_pair({job.a, job.b}))
+  if (same_object ? !a.options.self_collision : !world.may_pair({job.a, job.b}))
     return {.stage = PairStage::not_tested};
   const Triangle &ids_a = a.octree().triangles()[triangles.a], &ids_b = b.octree().triangles()[triangles.b];
   if (!may_touch_by_groups(a.vertex_groups(), ids_a, b.vertex_groups(), ids_b))
     return {.stage = PairStage::not_tested};
   // Elements touch or are near even when the pair of triangles they belong to is not tested.
-  if (are_joined(job, triangles)) return {};
+  if (are_joined(world, result, job, triangles)) return {};
   if (same_object && share_vertex(ids_a, ids_b)) {
-    const bool meet = question().searches_at_rest() && a.options.neighbours == Neighbours::exact &&
+    const bool meet = question.searches_at_rest() && a.options.neighbours == Neighbours::exact &&
                       triangles.a != triangles.b && !is_inert(a, triangles.a) && !is_inert(b, triangles.b) &&
                       meet_elsewhere(ids_a, points_of(a, triangles.a), ids_b, points_of(b, triangles.b));
     return {.stage = meet ? PairStage::contact : PairStage::shared_vertex};
   }
   if (is_inert(a, triangles.a) || is_inert(b, triangles.b)) return {.stage = PairStage::inert};
-  const ObjectPair ids{world_.id_of(job.a), world_.id_of(job.b)};
-  if (!same_object && !std::binary_search(pairs().begin(), pairs().end(), ids))
-    return objects_apart(a, b, world_.options.bounding_volume,
-                         question().is_continuous() || question().has_proximity());
-  const ObjectPairView pair = search_view(job);
+  const ObjectPair ids{world.id_of(job.a), world.id_of(job.b)};
+  if (!same_object &&
+      !std::binary_search(detection.pairs().pairs().begin(), detection.pairs().pairs().end(), ids))
+    return objects_apart(a, b, world.options.bounding_volume,
+                         question.is_continuous() || question.has_proximity());
+  const ObjectPairView pair = search_view(world, question, job);
   const ChildPair at = last_children(pair, triangles);
   if (at.apart) return cells_apart(pair, at, a, b);
   const TrianglePoints points_a = points_of(a, triangles.a), points_b = points_of(b, triangles.b);
   const bool boxes_apart =
       pair.is_moving() ? moving_faces_apart(pair, triangles) : leaf_triangles_apart(pair, at, triangles);
   if (boxes_apart) return triangle_boxes_apart(points_a, points_b);
-  if (question().searches_at_rest() && triangles_intersect(points_a, points_b)) return {};
+  if (question.searches_at_rest() && triangles_intersect(points_a, points_b)) return {};
   return triangles_apart(points_a, points_b);
 }
 
-PairExplanation Inspection::explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
-                                    std::uint32_t triangle_b) const {
-  const TrianglePair triangles{octree_triangle(world_.object(id_a, "explain"), triangle_a),
-                               octree_triangle(world_.object(id_b, "explain"), triangle_b)};
-  if (!is_current_) fail("explain: nothing was detected at the present positions; call detect first");
-  const bool in_order = id_a == id_b ? triangles.a <= triangles.b : id_a < id_b;
-  if (in_order) return explain_in_order({id_a.index, id_b.index}, triangles);
-  return mirrored(explain_in_order({id_b.index, id_a.index}, {triangles.b, triangles.a}));
+}  // namespace
+
+PairExplanation SceneInspector::explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
+                                        std::uint32_t triangle_b) const {
+  const World& world = SceneAccess::of(*scene_).world;
+  const TrianglePair triangles{octree_triangle(world.object(id_a, "explain"), triangle_a),
+                               octree_triangle(world.object(id_b, "explain"), triangle_b)};
+  const auto& inside = detected(*scene_, "explain");
+  const auto in_order = [&](const ContactJob& job, const TrianglePair& ordered) {
+    return explain_in_order(world, inside.detection, inside.result, job, ordered);
+  };
+  if (id_a == id_b ? triangles.a <= triangles.b : id_a < id_b)
+    return in_order({id_a.index, id_b.index}, triangles);
+  return mirrored(in_order({id_b.index, id_a.index}, {triangles.b, triangles.a}));
 }
 
 }  // namespace supple

@@ -1,4 +1,4 @@
-#include "inspect/inspection.hpp"
+#include "supple/inspection.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -8,12 +8,22 @@
 #include "core/sort_once.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/sphere.hpp"
+#include "inspect/octree_statistics.hpp"
 #include "inspect/polytope.hpp"
 #include "inspect/searched_volumes.hpp"
 #include "mesh/share_vertex.hpp"
+#include "scene/scene_implementation.hpp"
 
 namespace supple {
 namespace {
+
+/// A cell by its place in the octree: 0 for the root, otherwise 1 plus eight times the node plus the child.
+/// These names ascend by level and number.
+using CellName = std::uint64_t;
+
+CellName name_of(const OctreeView& view, std::uint32_t node, int child) {
+  return is_one_leaf(view) ? 0 : 1 + node_width * CellName{node} + static_cast<CellName>(child);
+}
 
 /// The cells of an octree, where the object is now.
 class CellReader {
@@ -46,6 +56,12 @@ class CellReader {
     return cell;
   }
 
+  OctreeCell named(CellName name) const {
+    return name == 0 ? root()
+                     : cell(static_cast<std::uint32_t>((name - 1) / node_width),
+                            static_cast<int>((name - 1) % node_width));
+  }
+
   /// The leaf with a triangle, numbered in octree order.
   OctreeCell leaf_with(std::uint32_t triangle) const {
     std::uint32_t n = 0;
@@ -60,89 +76,6 @@ class CellReader {
  private:
   OctreeView view_;
   const WorldObject* object_;
-};
-
-/// The cells of one side of a `NodePairList`. A cell is named by its place in the octree: 0 for the root,
-/// otherwise 1 plus eight times the node plus the child. These names ascend by level and number.
-class CollidingCells {
- public:
-  using Name = std::uint64_t;
-
-  CollidingCells(const OctreeView& view, const WorldObject& object)
-      : reader_(view, object), is_one_leaf_(is_one_leaf(view)) {}
-
-  Name add_root() { return add(0); }
-  Name add(std::uint32_t node, int child) {
-    return add(is_one_leaf_ ? 0 : 1 + node_width * Name{node} + static_cast<Name>(child));
-  }
-  /// Call after all cells were added, and before `place_of`.
-  std::vector<OctreeCell> list() {
-    sort_once(names_);
-    std::vector<OctreeCell> cells;
-    for (const Name name : names_)
-      cells.push_back(name == 0 ? reader_.root()
-                                : reader_.cell(static_cast<std::uint32_t>((name - 1) / node_width),
-                                               static_cast<int>((name - 1) % node_width)));
-    return cells;
-  }
-  std::uint32_t place_of(Name name) const {
-    return static_cast<std::uint32_t>(std::lower_bound(names_.begin(), names_.end(), name) - names_.begin());
-  }
-
- private:
-  Name add(Name name) {
-    names_.push_back(name);
-    return name;
-  }
-
-  CellReader reader_;
-  bool is_one_leaf_;
-  std::vector<Name> names_;
-};
-
-/// Exchanges both objects.
-NodePairList mirrored(NodePairList list) {
-  std::swap(list.nodes_a, list.nodes_b);
-  for (NodePairList::Pair& pair : list.pairs) std::swap(pair.a, pair.b);
-  for (std::uint32_t level = 0; level < list.level_count(); ++level) {
-    const auto at = [&](std::uint32_t k) {
-      return list.pairs.begin() + static_cast<std::ptrdiff_t>(list.level_begin[k]);
-    };
-    std::sort(at(level), at(level + 1));
-  }
-  return list;
-}
-
-/// Collects the first `limit` pairs in ascending order and counts all of them.
-class FirstPairs {
- public:
-  explicit FirstPairs(std::size_t limit) : limit_(limit) {}
-
-  void add(TrianglePair pair) {
-    ++count_;
-    if (limit_ == 0) return;
-    pairs_.push_back(pair);
-    if (pairs_.size() >= 2 * limit_ + slack) drop_last();
-  }
-  std::uint64_t count() const { return count_; }
-  std::span<const TrianglePair> sorted() {
-    drop_last();
-    std::sort(pairs_.begin(), pairs_.end());
-    return pairs_;
-  }
-
- private:
-  static constexpr std::size_t slack = 1024;
-
-  void drop_last() {
-    if (pairs_.size() <= limit_) return;
-    std::nth_element(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(limit_), pairs_.end());
-    pairs_.resize(limit_);
-  }
-
-  std::size_t limit_;
-  std::uint64_t count_ = 0;
-  std::vector<TrianglePair> pairs_;
 };
 
 /// Visits the pairs of triangles of two leaves whose swept boxes overlap.
@@ -172,25 +105,37 @@ void for_each_candidate(Traversal& traversal, const ObjectPairView& pair, Visit&
   }
 }
 
-}  // namespace
-
 /// Throws an error unless the object is as in the last `detect`. All of its nodes are refitted.
-const WorldObject& Inspection::refitted_object(ObjectId id, const char* call) const {
-  WorldObject& asked = world_.object(id, call);
-  if (asked.has_moved() || asked.needs_refit(question().shapes())) {
+const WorldObject& refitted_object(const World& world, const Question& question, ObjectId id,
+                                   const char* call) {
+  WorldObject& asked = world.object(id, call);
+  if (asked.has_moved() || asked.needs_refit(question.shapes())) {
     fail(std::string(call) + ": " + asked.options.name +
          " was moved since anything was detected; call detect first");
   }
-  if (question().shapes().lazy) asked.update_all_children(world_.parallel);
+  if (question.shapes().lazy) asked.update_all_children(world.parallel);
   return asked;
 }
 
-std::vector<OctreeCell> Inspection::octree_cells(ObjectId id, std::optional<std::uint32_t> level) const {
-  const WorldObject& asked = refitted_object(id, "cells");
+}  // namespace
+
+ObjectPairView search_view(const World& world, const Question& question, const ContactJob& job) {
+  OctreeView a = question.view(world[job.a]), b = question.view(world[job.b]);
+  a.culled = b.culled = nullptr;
+  if (question.searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
+  const double separation = question.is_continuous()
+                                ? question.separation_of(world[job.a], world[job.b])
+                                : reach_of_margins(world[job.a].options.margin, world[job.b].options.margin);
+  return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
+}
+
+std::vector<OctreeCell> SceneInspector::cells(ObjectId id, std::optional<std::uint32_t> level) const {
+  const auto& inside = SceneAccess::of(*scene_);
+  const WorldObject& asked = refitted_object(inside.world, inside.detection.question(), id, "cells");
   const std::span<const OctreeNode> nodes = asked.octree().nodes();
   std::vector<OctreeCell> cells;
   if (nodes.empty()) return cells;
-  const CellReader reader(question().view(asked), asked);
+  const CellReader reader(inside.detection.question().view(asked), asked);
   if (level == 0) return {reader.root()};
   for (std::uint32_t n = 0; n < nodes.size(); ++n) {
     const std::uint32_t here = nodes[n].level + 1u;
@@ -203,31 +148,37 @@ std::vector<OctreeCell> Inspection::octree_cells(ObjectId id, std::optional<std:
   return cells;
 }
 
-OctreeCell Inspection::leaf(ObjectId id, std::uint32_t triangle) const {
-  const WorldObject& asked = refitted_object(id, "leaf");
+OctreeCell SceneInspector::leaf(ObjectId id, std::uint32_t triangle) const {
+  const auto& inside = SceneAccess::of(*scene_);
+  const WorldObject& asked = refitted_object(inside.world, inside.detection.question(), id, "leaf");
   check_triangle(asked, triangle, "leaf");
-  return CellReader(question().view(asked), asked).leaf_with(asked.octree().octree_triangle(triangle));
+  return CellReader(inside.detection.question().view(asked), asked)
+      .leaf_with(asked.octree().octree_triangle(triangle));
 }
 
-NodePairList Inspection::node_pairs(ObjectId id_a, ObjectId id_b) const {
-  const WorldObject &a = world_.object(id_a, "node_pairs"), &b = world_.object(id_b, "node_pairs");
-  if (!is_current_) fail("node_pairs: nothing was detected at the present positions; call detect first");
-  if (id_b < id_a) return mirrored(node_pairs(id_b, id_a));
+NodePairList SceneInspector::node_pairs(ObjectId id_a, ObjectId id_b) const {
+  const World& world = SceneAccess::of(*scene_).world;
+  const WorldObject &a = world.object(id_a, "node_pairs"), &b = world.object(id_b, "node_pairs");
+  const Detection& detection = detected(*scene_, "node_pairs").detection;
   NodePairList list;
-  const bool is_compared = std::any_of(jobs().begin(), jobs().end(), [&](const ContactJob& job) {
-    return job.a == id_a.index && job.b == id_b.index;
+  const auto [low, high] = std::minmax(id_a, id_b);
+  const ContactJob job{low.index, high.index};
+  const bool is_compared = std::ranges::any_of(detection.pairs().jobs(), [&](const ContactJob& compared) {
+    return compared.a == job.a && compared.b == job.b;
   });
   if (!is_compared || a.octree().nodes().empty() || b.octree().nodes().empty()) return list;
 
-  const ObjectPairView view = search_view(ContactJob{id_a.index, id_b.index});
-  CollidingCells cells_a(view.a, a), cells_b(view.b, b);
-  std::vector<std::pair<CollidingCells::Name, CollidingCells::Name>> names;
+  const ObjectPairView view = search_view(world, detection.question(), job);
+  std::vector<std::array<CellName, 2>> names;  // of the cells of a and b
+  const auto add = [&](CellName low_name, CellName high_name) {
+    names.push_back(id_b < id_a ? std::array{high_name, low_name} : std::array{low_name, high_name});
+  };
   const auto finish_level = [&] {
     std::sort(names.begin() + static_cast<std::ptrdiff_t>(list.level_begin.back()), names.end());
     list.level_begin.push_back(names.size());
   };
   // The broad phase found that the roots overlap. Two octrees of one leaf each have only this pair.
-  names.emplace_back(cells_a.add_root(), cells_b.add_root());
+  add(0, 0);
   finish_level();
   std::vector<NodePair> nodes;
   if (!is_one_leaf(view.a) || !is_one_leaf(view.b)) nodes.emplace_back();
@@ -238,55 +189,90 @@ NodePairList Inspection::node_pairs(ObjectId id_a, ObjectId id_b) const {
     nodes.clear();
     if (children.empty()) break;
     for (const ChildPair& at : children) {
-      names.emplace_back(cells_a.add(at.node_a, at.child_a), cells_b.add(at.node_b, at.child_b));
+      add(name_of(view.a, at.node_a, at.child_a), name_of(view.b, at.node_b, at.child_b));
       if (const auto below = nodes_below(view, at)) nodes.push_back(*below);
     }
     finish_level();
   }
-  list.nodes_a = cells_a.list();
-  list.nodes_b = cells_b.list();
-  list.pairs.reserve(names.size());
-  for (const auto& [name_a, name_b] : names)
-    list.pairs.push_back({cells_a.place_of(name_a), cells_b.place_of(name_b)});
+  list.pairs.resize(names.size());
+  const auto list_cells = [&](std::size_t side, const WorldObject& object, std::vector<OctreeCell>& cells,
+                              std::uint32_t NodePairList::Pair::*place) {
+    std::vector<CellName> of_side;
+    for (const auto& pair : names) of_side.push_back(pair[side]);
+    sort_once(of_side);
+    const CellReader reader(&object == &world[job.a] ? view.a : view.b, object);
+    for (const CellName name : of_side) cells.push_back(reader.named(name));
+    for (std::size_t i = 0; i < names.size(); ++i)
+      list.pairs[i].*place =
+          static_cast<std::uint32_t>(std::ranges::lower_bound(of_side, names[i][side]) - of_side.begin());
+  };
+  list_cells(0, a, list.nodes_a, &NodePairList::Pair::a);
+  list_cells(1, b, list.nodes_b, &NodePairList::Pair::b);
   return list;
 }
 
-std::uint32_t Inspection::octree_depth(ObjectId id) const {
-  const std::span<const OctreeNode> nodes = world_.object(id, "octree_depth").octree().nodes();
+std::uint32_t SceneInspector::octree_depth(ObjectId id) const {
+  const WorldObject& object = SceneAccess::of(*scene_).world.object(id, "octree_depth");
+  const std::span<const OctreeNode> nodes = object.octree().nodes();
   return nodes.empty() || nodes[0].child_count == 1 ? 0 : nodes.back().level + 1u;
 }
 
-ObjectPairView Inspection::search_view(const ContactJob& job) const {
-  OctreeView a = question().view(world_[job.a]), b = question().view(world_[job.b]);
-  a.culled = b.culled = nullptr;
-  if (question().searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
-  const double separation =
-      question().is_continuous() ? question().separation_of(world_[job.a], world_[job.b]) : reach_of(job);
-  return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
+OctreeStatistics SceneInspector::octree_statistics(ObjectId id) const {
+  const World& world = SceneAccess::of(*scene_).world;
+  WorldObject& asked = world.object(id, "octree_statistics");
+  asked.update_all_children(world.parallel);
+  return supple::octree_statistics(asked);
+}
+
+Aabb SceneInspector::bounds(ObjectId id) const {
+  return SceneAccess::of(*scene_).world.object(id, "bounds").box();
+}
+
+std::vector<SceneRegion> SceneInspector::regions() const {
+  return SceneAccess::of(*scene_).detection.pairs().finder().regions();
+}
+
+std::vector<SceneRegion> SceneInspector::regions(ObjectId id) const {
+  const auto& inside = SceneAccess::of(*scene_);
+  inside.world.object(id, "regions");
+  return inside.detection.pairs().finder().regions(id.index);
 }
 
 /// Jobs are in canonical order.
-CandidateList Inspection::candidates(std::size_t limit) const {
-  if (!is_current_) fail("candidates: nothing was detected at the present positions; call detect first");
+CandidateList SceneInspector::candidates(std::size_t limit) const {
+  const auto& inside = detected(*scene_, "candidates");
+  const World& world = inside.world;
   CandidateList list;
   const auto traversal = std::make_unique<Traversal>();
-  for (const ContactJob& job : jobs()) {
-    const std::span<const std::uint32_t> ids_a = world_[job.a].octree().triangle_ids();
-    const std::span<const std::uint32_t> ids_b = world_[job.b].octree().triangle_ids();
-    const std::uint32_t faces_a = world_[job.a].face_count();
-    const std::uint32_t faces_b = world_[job.b].face_count();
-    FirstPairs pairs(limit - list.pairs.size());
-    for_each_candidate(*traversal, search_view(job), [&](const TrianglePair& pair) {
-      TrianglePair named{ids_a[pair.a], ids_b[pair.b]};
-      if (named.a >= faces_a || named.b >= faces_b) return;  // an edge or a point of no triangle
+  std::vector<TrianglePair> first;  // as a heap
+  for (const ContactJob& job : inside.detection.pairs().jobs()) {
+    const WorldObject &a = world[job.a], &b = world[job.b];
+    const std::size_t most = limit - list.pairs.size();
+    first.clear();
+    const ObjectPairView view = search_view(world, inside.detection.question(), job);
+    for_each_candidate(*traversal, view, [&](const TrianglePair& pair) {
+      TrianglePair named{a.octree().triangle_ids()[pair.a], b.octree().triangle_ids()[pair.b]};
+      if (named.a >= a.face_count() || named.b >= b.face_count())
+        return;  // an edge or a point of no triangle
       if (job.a == job.b && named.a > named.b) std::swap(named.a, named.b);
-      pairs.add(named);
+      ++list.total;
+      first.push_back(named);
+      std::push_heap(first.begin(), first.end());
+      if (first.size() <= most) return;
+      std::pop_heap(first.begin(), first.end());
+      first.pop_back();
     });
-    list.total += pairs.count();
-    for (const TrianglePair& pair : pairs.sorted())
-      list.pairs.push_back({world_.id_of(job.a), world_.id_of(job.b), pair.a, pair.b});
+    std::sort_heap(first.begin(), first.end());
+    for (const TrianglePair& pair : first)
+      list.pairs.push_back({world.id_of(job.a), world.id_of(job.b), pair.a, pair.b});
   }
   return list;
+}
+
+std::string SceneInspector::validate() const {
+  const auto& inside = SceneAccess::of(*scene_);
+  const std::string wrong = inside.world.validate();
+  return wrong.empty() ? inside.detection.pairs().finder().validate() : wrong;
 }
 
 std::vector<std::array<Vec3d, 2>> edges_of(std::span<const Slab> slabs) {

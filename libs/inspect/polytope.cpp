@@ -5,12 +5,10 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/vector.hpp"
+
 namespace supple {
 namespace {
-
-Vec3d direction_of(const Slab& slab) {
-  return {slab.direction.x, slab.direction.y, slab.direction.z};
-}
 
 bool precedes(Vec3d p, Vec3d q) {
   return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
@@ -54,7 +52,7 @@ Polytope::Polytope(std::span<const Slab> slabs) {
     Vec3d p{};
     for (int k = 0; k < 3; ++k) {
       const Slab& slab = slabs[static_cast<std::size_t>(k)];
-      p += double{(bits >> k & 1) != 0 ? slab.high : slab.low} * direction_of(slab);
+      p += double{(bits >> k & 1) != 0 ? slab.high : slab.low} * in_double(slab.direction);
     }
     return p;
   };
@@ -64,8 +62,8 @@ Polytope::Polytope(std::span<const Slab> slabs) {
     faces_.push_back({corner(side), corner(side | u), corner(side | u | v), corner(side | v)});
   }
   for (const Slab& slab : slabs.subspan(3)) {
-    cut(direction_of(slab), slab.high);
-    cut(-direction_of(slab), -double{slab.low});
+    cut(in_double(slab.direction), slab.high);
+    cut(-in_double(slab.direction), -double{slab.low});
   }
 }
 

@@ -3,14 +3,27 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "core/error.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "octree/octree_topology.hpp"
 #include "octree/volumes/moving_boxes.hpp"
+#include "scene/scene_implementation.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
+
+/// The inside of a scene that is as in its last `detect`. Throws an error when it is not.
+inline const auto& detected(const Scene& scene, const char* call) {
+  const auto& inside = SceneAccess::of(scene);
+  if (inside.is_current()) return inside;
+  fail(std::string(call) + ": nothing was detected at the present positions; call detect first");
+}
+
+/// The pair as the narrow phase sees it, without self-collision culling.
+ObjectPairView search_view(const World& world, const Question& question, const ContactJob& job);
 
 /// Swept boxes are clamped to the range of float. A bound at the end of the range stands for infinity.
 inline Aabb unclamped(const Aabb& box) {

@@ -8,15 +8,9 @@
 #include "mesh/share_vertex.hpp"
 #include "supple/triangle_intersection.hpp"
 #include "verify/algebra/distance_algebra.hpp"
-#include "verify/brute_force_elements.hpp"
 
 namespace supple {
 namespace {
-
-TrianglePoints points_of(const PlainObject& object, std::uint32_t triangle) {
-  const Triangle& ids = object.triangles[triangle];
-  return {object.positions[ids[0]], object.positions[ids[1]], object.positions[ids[2]]};
-}
 
 /// Whether triangles (p, q, a) and (p, q, b) share a point outside of the segment from p to q.
 bool overlap_beside_edge(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b) {
@@ -48,7 +42,7 @@ bool meet_elsewhere_by_axes(const PlainObject& object, const Triangle& p, const 
   }
   if (shared.size() == 3) return true;
   if (of_p.empty() || of_q.empty()) return false;
-  const auto at = [&](std::uint32_t v) { return object.positions[v]; };
+  const auto at = [&](std::uint32_t v) { return object.end[v]; };
   if (shared.size() == 2) return overlap_beside_edge(at(shared[0]), at(shared[1]), at(of_p[0]), at(of_q[0]));
   const Vec3d v = at(shared[0]);
   // The side opposite to v; where v is on it, its ends.
@@ -69,9 +63,6 @@ bool meet_elsewhere_by_axes(const PlainObject& object, const Triangle& p, const 
 
 std::vector<TrianglePair> intersecting_pairs_by_brute_force(const PlainObject& a, const PlainObject& b,
                                                             bool same_object, const Parallel& parallel) {
-  const auto faces_of = [](const PlainObject& object) {
-    return boxed_faces({object.positions, object.positions, object.triangles});
-  };
   const auto decide = [&](const BoxedElement& p, const BoxedElement& q) -> std::optional<TrianglePair> {
     const TrianglePair pair{p.name[0], q.name[0]};
     if (same_object && pair.b <= pair.a) return {};
@@ -79,13 +70,12 @@ std::vector<TrianglePair> intersecting_pairs_by_brute_force(const PlainObject& a
     const bool are_neighbours = same_object && share_vertex(ids_p, ids_q);
     if (are_neighbours && a.neighbours == Neighbours::skip) return {};
     if (!may_touch_by_groups(a.groups, ids_p, b.groups, ids_q)) return {};
-    const bool meet = are_neighbours
-                          ? meet_elsewhere_by_axes(a, ids_p, ids_q)
-                          : triangles_intersect_by_axes(points_of(a, pair.a), points_of(b, pair.b));
+    const bool meet = are_neighbours ? meet_elsewhere_by_axes(a, ids_p, ids_q)
+                                     : triangles_intersect_by_axes(a.corners(pair.a), b.corners(pair.b));
     return meet ? std::optional(pair) : std::nullopt;
   };
   std::vector<TrianglePair> pairs;
-  decide_all(faces_of(a), Sweep(faces_of(b)), false, false, 0, parallel, decide, pairs);
+  decide_all(boxed_faces(a), boxed_faces(b), false, 0, parallel, decide, pairs);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

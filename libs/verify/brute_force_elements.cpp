@@ -1,44 +1,47 @@
 #include "verify/brute_force_elements.hpp"
 
-#include <tuple>
-
 #include "core/sort_once.hpp"
 #include "geometry/vector.hpp"
+#include "world/object/world_object.hpp"
 
 namespace supple {
 namespace {
 
 /// Appends the element unless a coordinate is not finite.
-void append(const PlainMovingObject& object, std::array<std::uint32_t, 3> vertices,
+void append(const PlainObject& object, std::array<std::uint32_t, 3> vertices,
             std::array<std::uint32_t, 2> name, FeatureKind kind, std::vector<BoxedElement>& elements) {
-  BoxedElement element{vertices, name, kind, {}, {}, {}, {}};
-  const auto corner = [&](const std::vector<Vec3d>& positions, std::size_t i) {
-    return positions[vertices[i]];
+  const auto corners = [&](const std::vector<Vec3d>& at) {
+    return std::array{at[vertices[0]], at[vertices[1]], at[vertices[2]]};
   };
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!is_finite(corner(object.start, i)) || !is_finite(corner(object.end, i))) return;
-  }
-  const auto set_box = [&](const std::vector<Vec3d>& positions, double* min, double* max) {
-    for (int axis = 0; axis < 3; ++axis) {
-      std::tie(min[axis], max[axis]) =
-          std::minmax({corner(positions, 0)[axis], corner(positions, 1)[axis], corner(positions, 2)[axis]});
-    }
-  };
-  set_box(object.start, element.start_min, element.start_max);
-  set_box(object.end, element.end_min, element.end_max);
-  elements.push_back(element);
+  const std::array start = corners(object.start), end = corners(object.end);
+  if (std::ranges::all_of(start, is_finite) && std::ranges::all_of(end, is_finite))
+    elements.push_back({vertices, name, kind, exact_box(start), exact_box(end)});
 }
 
 }  // namespace
 
-std::vector<BoxedElement> boxed_faces(const PlainMovingObject& object) {
+PlainObject plain_object(const WorldObject& object, bool at_rest) {
+  const ObjectOctree& octree = object.octree();
+  PlainObject plain{.groups = object.vertex_groups(),
+                    .face_count = object.face_count(),
+                    .neighbours = object.options.neighbours};
+  for (std::uint32_t t = 0; t < octree.triangles().size(); ++t)
+    plain.triangles.push_back(octree.user_triangle(t));
+  for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex) {
+    plain.end.push_back(object.placement().position(vertex));
+    plain.start.push_back(at_rest ? plain.end.back() : object.placement().start_position(vertex));
+  }
+  return plain;
+}
+
+std::vector<BoxedElement> boxed_faces(const PlainObject& object) {
   std::vector<BoxedElement> faces;
   for (std::uint32_t f = 0; f < object.face_count; ++f)
     append(object, object.triangles[f], {f, f}, FeatureKind::face, faces);
   return faces;
 }
 
-BoxedElements boxed_elements(const PlainMovingObject& object) {
+BoxedElements boxed_elements(const PlainObject& object) {
   std::vector<std::uint32_t> vertices;
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const Triangle& t : object.triangles) {
@@ -71,11 +74,12 @@ std::uint64_t element_pairs(const BoxedElements& a, const BoxedElements& b, bool
 
 bool stay_apart(const BoxedElement& p, const BoxedElement& q, double separation) {
   const double least = separation * (1 + 0x1p-50);
+  const auto is_beyond = [&](const BoxedElement& low, const BoxedElement& high, int axis) {
+    return high.start.min[axis] - low.start.max[axis] > least &&
+           high.end.min[axis] - low.end.max[axis] > least;
+  };
   for (int axis = 0; axis < 3; ++axis) {
-    if (p.start_min[axis] - q.start_max[axis] > least && p.end_min[axis] - q.end_max[axis] > least)
-      return true;
-    if (q.start_min[axis] - p.start_max[axis] > least && q.end_min[axis] - p.end_max[axis] > least)
-      return true;
+    if (is_beyond(p, q, axis) || is_beyond(q, p, axis)) return true;
   }
   return false;
 }
@@ -84,14 +88,6 @@ bool share_vertex(const BoxedElement& p, const BoxedElement& q) {
   return std::any_of(p.vertices.begin(), p.vertices.end(), [&](std::uint32_t vertex) {
     return std::find(q.vertices.begin(), q.vertices.end(), vertex) != q.vertices.end();
   });
-}
-
-Sweep::Sweep(std::vector<BoxedElement> unsorted) : elements(std::move(unsorted)) {
-  std::sort(elements.begin(), elements.end(), [](const BoxedElement& p, const BoxedElement& q) {
-    return std::tuple(p.sweep_min(), p.name) < std::tuple(q.sweep_min(), q.name);
-  });
-  for (const BoxedElement& q : elements)
-    reach.push_back(reach.empty() ? q.sweep_max() : std::max(reach.back(), q.sweep_max()));
 }
 
 }  // namespace supple

@@ -22,27 +22,17 @@ struct TouchingElements {
   bool may_be_missing = false;
 };
 
-/// What of the truth is reported.
-struct BruteForceSearch {
-  ImpactOptions impact;
-  ElementKinds kinds = ElementKinds::all;
-  ContinuousListing listing = ContinuousListing::all;
-};
-
 struct BruteForceImpacts {
   std::vector<TouchingElements> touching;  ///< in canonical order
   std::uint64_t pairs_checked = 0;
 };
 
-/// Returns all pairs of elements that touch within the step and that a search reports; with
-/// `ContinuousListing::first` also all others. Each pair is decided by comparing
+/// Returns all pairs of elements of these kinds that touch within the step. Each pair is decided by comparing
 /// the exact boxes of the elements at both ends or by algebra. For an object with itself (`same_object`),
 /// pairs that share a vertex id are left out. Elements with a coordinate that is not finite touch nothing;
 /// vertices that no triangle uses are not elements.
-///
-/// The boxes of b are sorted along x, so that one comparison decides many pairs.
-BruteForceImpacts find_impacts_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
-                                              bool same_object, const BruteForceSearch& search,
+BruteForceImpacts find_impacts_by_brute_force(const PlainObject& a, const PlainObject& b, bool same_object,
+                                              const ImpactOptions& options, ElementKinds kinds,
                                               const Parallel& parallel);
 
 /// Appends the differences between reported contacts and the truth, both in canonical order: contacts that

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/sort_once.hpp"
@@ -22,16 +22,16 @@ std::vector<ContainedPart> contained_parts(const PlainObject& inner, std::span<c
                                            const std::vector<std::uint8_t>& is_used,
                                            std::span<const std::uint32_t> touching,
                                            std::span<const ExactPenetration> found) {
-  VertexSets sets(inner.positions.size());
-  std::vector<std::uint8_t> is_excluded(inner.positions.size(), 0), is_inside = is_excluded;
+  VertexSets sets(inner.end.size());
+  std::vector<std::uint8_t> is_excluded(inner.end.size(), 0), is_inside = is_excluded;
   for (const Triangle& triangle : triangles) {
     for (const std::uint32_t v : triangle) sets.join(triangle[0], v);
   }
   for (const ExactPenetration& p : found) is_inside[p.vertex] = p.where == Containment::inside ? 1 : 0;
   for (const std::uint32_t t : touching) is_excluded[sets.root(inner.triangles[t][0])] = 1;
-  std::vector<ContainedPart> parts(inner.positions.size());
+  std::vector<ContainedPart> parts(inner.end.size());
   std::size_t part_count = 0;
-  for (std::uint32_t v = 0; v < inner.positions.size(); ++v) {
+  for (std::uint32_t v = 0; v < inner.end.size(); ++v) {
     if (is_used[v] == 0) continue;
     const std::uint32_t root = sets.root(v);
     if (root == v) ++part_count;
@@ -52,21 +52,21 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
                                                         std::span<const std::uint32_t> touching,
                                                         const Parallel& parallel) {
   BruteForcePenetrations result;
-  std::vector<std::uint8_t> is_used(inner.positions.size(), 0);
-  std::vector<Triangle> triangles = inner.triangles;
+  std::vector<std::uint8_t> is_used(inner.end.size(), 0);
+  std::vector<Triangle> triangles(inner.faces().begin(), inner.faces().end());
   std::erase_if(triangles, [&](const Triangle& triangle) {
-    return std::ranges::any_of(triangle, [&](std::uint32_t v) { return !is_finite(inner.positions[v]); });
+    return std::ranges::any_of(triangle, [&](std::uint32_t v) { return !is_finite(inner.end[v]); });
   });
   for (const Triangle& triangle : triangles) {
     for (const std::uint32_t v : triangle) is_used[v] = 1;
   }
   const PlainSurface surface(outer);
-  std::vector<std::vector<ExactPenetration>> found(parallel.worker_count());
-  parallel.for_ranges(inner.positions.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+  std::vector<std::optional<ExactPenetration>> found(inner.end.size());
+  parallel.for_ranges(inner.end.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t) {
     std::size_t guess = 0;
     for (std::size_t v = begin; v < end; ++v) {
       if (is_used[v] == 0) continue;
-      const Vec3d& p = inner.positions[v];
+      const Vec3d& p = inner.end[v];
       ExactPenetration penetration{static_cast<std::uint32_t>(v), surface.containment(p), 0, {}};
       if (penetration.where == Containment::outside) continue;
       if (penetration.where == Containment::inside) {
@@ -75,14 +75,14 @@ BruteForcePenetrations find_penetrations_by_brute_force(const PlainObject& inner
         penetration.triangle = nearest.triangle;
         penetration.squared_depth = std::move(nearest.squared);
       }
-      found[w].push_back(penetration);
+      found[v] = std::move(penetration);
     }
   });
-  for (auto& part : found) std::move(part.begin(), part.end(), std::back_inserter(result.vertices));
-  std::sort(result.vertices.begin(), result.vertices.end(),
-            [](const auto& p, const auto& q) { return p.vertex < q.vertex; });
+  for (auto& penetration : found) {
+    if (penetration) result.vertices.push_back(*std::move(penetration));
+  }
   result.parts = contained_parts(inner, triangles, is_used, touching, result.vertices);
-  result.pairs_checked = inner.positions.size() * surface.triangles.size();
+  result.pairs_checked = inner.end.size() * surface.triangles.size();
   return result;
 }
 
@@ -106,9 +106,8 @@ void compare_penetrations(const ObjectPair& pair, std::span<const Penetration> i
         expected.where == Containment::inside ? is_inside && !is_on : is_on && !is_inside;
     if (!is_right_list)
       note(expected.vertex, Fault::missed);
-    else if (is_inside &&
-             (next_inside->triangle != expected.triangle ||
-              !is_accurate(next_inside->depth, expected.squared_depth.over, expected.squared_depth.under)))
+    else if (is_inside && (next_inside->triangle != expected.triangle ||
+                           !is_accurate(next_inside->depth, expected.squared_depth)))
       note(expected.vertex, Fault::inexact);
     if (is_inside) ++next_inside;
     if (is_on) ++next_on;
@@ -155,8 +154,7 @@ std::vector<std::uint32_t> curves_around(const CurveSideTruth& truth, std::size_
       }
       // The contacts of a triangle without area do not name all of its features.
       bool used_exact = false;
-      if (find_projection(object.positions[v], object.positions[w], object.positions[x], used_exact))
-        continue;
+      if (find_projection(object.end[v], object.end[w], object.end[x], used_exact)) continue;
       for (const auto& [p, q] : {VertexPair{v, w}, VertexPair{w, x}, VertexPair{v, x}})
         crossed.push_back({{std::min(p, q), std::max(p, q)}, c});
     }
@@ -166,11 +164,11 @@ std::vector<std::uint32_t> curves_around(const CurveSideTruth& truth, std::size_
     return std::ranges::equal_range(crossed, VertexPair{std::min(v, w), std::max(v, w)}, {},
                                     [](const auto& crossing) { return crossing.first; });
   };
-  std::vector<std::uint8_t> is_inside(object.positions.size());
+  std::vector<std::uint8_t> is_inside(object.end.size());
   for (const ExactPenetration& p : truth.inside) is_inside[p.vertex] = 1;
-  VertexSets sets(object.positions.size());
+  VertexSets sets(object.end.size());
   const auto for_each_edge = [&](const auto& visit) {
-    for (const Triangle& triangle : object.triangles) {
+    for (const Triangle& triangle : object.faces()) {
       for (const auto& [i, k] : {VertexPair{0, 1}, VertexPair{1, 0}, VertexPair{1, 2}, VertexPair{2, 1},
                                  VertexPair{2, 0}, VertexPair{0, 2}}) {
         if (is_inside[triangle[i]] != 0) visit(triangle[i], triangle[k]);
@@ -180,7 +178,7 @@ std::vector<std::uint32_t> curves_around(const CurveSideTruth& truth, std::size_
   for_each_edge([&](std::uint32_t v, std::uint32_t w) {
     if (is_inside[w] != 0 && crossings_of(v, w).empty()) sets.join(v, w);
   });
-  std::vector<std::uint32_t> around(object.positions.size(), no_curve);
+  std::vector<std::uint32_t> around(object.end.size(), no_curve);
   for_each_edge([&](std::uint32_t v, std::uint32_t w) {
     for (const auto& crossings : {crossings_of(v, w), crossings_of(w, w)}) {
       for (const auto& [edge, curve] : crossings) {
@@ -220,7 +218,7 @@ void verify_curves(const ObjectPair& pair, const std::array<CurveSideTruth, 2>& 
     for (const ExactPenetration& p : sides[side].inside) {
       const std::uint32_t c = around[p.vertex];
       if (c >= curves.size() || numbers[c]++ % (counts[c] / 256 + 1) != 0) continue;
-      const Vec3d& point = sides[side].object->positions[p.vertex];
+      const Vec3d& point = sides[side].object->end[p.vertex];
       const double longest = curves[c].depth * (1 + 0x1p-30) + 0x1p-40 * largest_magnitude(point);
       const std::vector<ExactHit> hits =
           hits_by_brute_force({point, side == 0 ? curves[c].normal : Vec3d{} - curves[c].normal}, outer);
@@ -245,7 +243,7 @@ void verify_manifolds(const ObjectPair& pair, const std::array<const PlainObject
       depth = curve.depth;
       for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
         for (const std::uint32_t v : result.enclosed_vertices_of(curve, side)) {
-          const Vec3d at = objects[side == ContactSide::a ? 0 : 1]->positions[v];
+          const Vec3d at = objects[side == ContactSide::a ? 0 : 1]->end[v];
           const double height = dot(at - curve.centroid, side == ContactSide::a ? -normal : normal);
           if (height > 0) known.emplace_back(std::min(height, depth), at);
         }

@@ -10,7 +10,7 @@
 #include "supple/penetration.hpp"
 #include "supple/queries.hpp"
 #include "supple/verify.hpp"
-#include "verify/brute_force_contacts.hpp"
+#include "verify/brute_force_elements.hpp"
 #include "verify/plain_surface.hpp"
 
 namespace supple {
@@ -20,7 +20,7 @@ struct ExactPenetration {
   std::uint32_t vertex = 0;
   Containment where = Containment::inside;
   std::uint32_t triangle = 0;  ///< the nearest one, if inside; the smallest of several
-  Fraction squared_depth;
+  Rational squared_depth;
 };
 
 struct BruteForcePenetrations {

@@ -26,17 +26,11 @@ struct BruteForceProximity {
   std::uint64_t pairs_checked = 0;
 };
 
-/// Returns all pairs within reach at the end of the step. Exact boxes, distances in double precision that are
-/// larger by far more than rounding, or rationals decide each pair of elements.
-BruteForceProximity find_proximity_by_brute_force(const PlainMovingObject& a, const PlainMovingObject& b,
+/// Returns all pairs within reach of objects at rest. Exact boxes, directions in double precision along which
+/// elements are apart by far more than rounding, or rationals decide each pair of elements.
+BruteForceProximity find_proximity_by_brute_force(const PlainObject& a, const PlainObject& b,
                                                   bool same_object, double reach, ProximityListing listing,
                                                   ElementKinds kinds, const Parallel& parallel);
-
-/// Whether a vertex and a face, or two edges, are clearly farther apart than `reach`: the
-/// planes or lines of their interiors are, or no points inside them are closest, and their borders are
-/// farther apart. Rounding, and interiors that are nearly parallel, change a distance by much less than the
-/// slack.
-bool clearly_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double reach);
 
 /// Appends the differences between reported pairs and the truth, both in canonical order.
 void compare_proximity(const ObjectPair& pair, std::span<const ProximityPair> reported,

@@ -10,23 +10,6 @@
 #include "geometry/vector.hpp"
 
 namespace supple {
-namespace {
-
-/// More than a distance that was computed in double precision, whose squares may underflow.
-double increased(double distance) {
-  return distance * (1 + 0x1p-40) + 0x1p-500;
-}
-
-/// Calls `visit(surface, triangle)` for all triangles in canonical order.
-template <class Visit>
-void for_each_triangle(std::span<const PlainSurface> surfaces, const Visit& visit) {
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    for (const BoxedCorners& t : surfaces[s].triangles) visit(s, t);
-  }
-}
-
-}  // namespace
-
 std::optional<ExactNearest> nearest_by_brute_force(const Vec3d& point, std::span<const PlainSurface> surfaces,
                                                    double max_distance) {
   std::optional<PlainSurface::Nearest> nearest;
@@ -39,35 +22,16 @@ std::optional<ExactNearest> nearest_by_brute_force(const Vec3d& point, std::span
     nearest_surface = s;
   }
   const bool is_bounded = max_distance <= std::numeric_limits<double>::max();
-  if (!nearest || (is_bounded && nearest->squared.value() > squared(max_distance))) return {};
+  if (!nearest || (is_bounded && nearest->squared > squared(max_distance))) return {};
   const TrianglePoints& corners = surfaces[nearest_surface].triangles[nearest->place].corners;
   return ExactNearest{nearest_surface, nearest->triangle, distance_by_algebra({&point, 1}, corners)};
 }
 
 namespace {
 
-/// A bound of the coordinate of a point along one of the axes of a ray, relative to the origin of the ray.
-struct AlongAxis {
-  double value = 0, error = 0;
-
-  bool is_negative() const { return value < -error; }
-  bool is_positive() const { return value > error; }
-};
-
-AlongAxis along(const Vec3d& axis, const Vec3d& to_point) {
-  const double x = axis.x * to_point.x, y = axis.y * to_point.y, z = axis.z * to_point.z;
-  return {x + y + z, 0x1p-48 * (std::fabs(x) + std::fabs(y) + std::fabs(z)) + 0x1p-1060};
-}
-
-/// The largest part of a direction, by axis.
-int main_axis(const Vec3d& d) {
-  const double x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
-  return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-}
-
 /// Two vectors that are exactly perpendicular to a direction and independent.
 std::array<Vec3d, 2> across(const Vec3d& d) {
-  const int main = main_axis(d), first = (main + 1) % 3, second = (main + 2) % 3;
+  const int main = main_axis(absolute(d)), first = (main + 1) % 3, second = (main + 2) % 3;
   std::array<Vec3d, 2> axes;
   axes[0][first] = d[main];
   axes[0][main] = -d[first];
@@ -80,13 +44,13 @@ std::array<Vec3d, 2> across(const Vec3d& d) {
 /// its origin.
 bool clearly_misses(const Ray& ray, const std::array<Vec3d, 2>& axes, const TrianglePoints& corners) {
   for (const Vec3d& axis : {axes[0], axes[1], ray.direction}) {
-    bool are_negative = true, are_positive = axis != ray.direction;
-    for (const Vec3d& corner : corners) {
-      const AlongAxis place = along(axis, corner - ray.origin);
-      are_negative = are_negative && place.is_negative();
-      are_positive = are_positive && place.is_positive();
-    }
-    if (are_negative || are_positive) return true;
+    const auto are_beyond = [&](const Vec3d& outward) {
+      return std::ranges::all_of(corners, [&](const Vec3d& corner) {
+        const Vec3d p = corner - ray.origin;
+        return dot(outward, p) > 0x1p-48 * dot(absolute(outward), absolute(p)) + 0x1p-1060;
+      });
+    };
+    if (are_beyond(-axis) || (axis != ray.direction && are_beyond(axis))) return true;
   }
   return false;
 }
@@ -139,59 +103,44 @@ std::vector<ExactHit> hits_by_brute_force(const Ray& ray, std::span<const PlainS
   std::vector<ExactHit> hits;
   if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3d{}) return hits;
   const std::array<Vec3d, 2> axes = across(ray.direction);
-  for_each_triangle(surfaces, [&](std::size_t surface, const BoxedCorners& triangle) {
-    if (clearly_misses(ray, axes, triangle.corners)) return;
-    if (auto t = first_parameter(ray, axes, triangle.corners))
-      hits.push_back({surface, triangle.triangle, *std::move(t)});
-  });
+  for (std::size_t surface = 0; surface < surfaces.size(); ++surface) {
+    for (const BoxedCorners& triangle : surfaces[surface].triangles) {
+      if (clearly_misses(ray, axes, triangle.corners)) continue;
+      if (auto t = first_parameter(ray, axes, triangle.corners))
+        hits.push_back({surface, triangle.triangle, *std::move(t)});
+    }
+  }
   std::ranges::sort(hits, [](const ExactHit& p, const ExactHit& q) {
     return std::tie(p.t, p.surface, p.triangle) < std::tie(q.t, q.surface, q.triangle);
   });
   return hits;
 }
 
-namespace {
-
-/// The part of a convex polygon on one side of a plane across an axis.
-std::vector<RationalVector> clipped(const std::vector<RationalVector>& polygon, std::size_t axis,
-                                    const Rational& limit, bool keeps_less) {
-  const auto is_kept = [&](const RationalVector& p) {
-    return keeps_less ? p[axis] <= limit : p[axis] >= limit;
-  };
-  std::vector<RationalVector> result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const RationalVector &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    if (is_kept(p)) result.push_back(p);
-    if (is_kept(p) == is_kept(q)) continue;
-    const Rational part = (limit - p[axis]) / (q[axis] - p[axis]);
-    RationalVector cut;
-    for (std::size_t k = 0; k < 3; ++k) cut[k] = k == axis ? limit : p[k] + part * (q[k] - p[k]);
-    result.push_back(cut);
-  }
-  return result;
-}
-
-}  // namespace
-
 bool overlaps_by_brute_force(const QueryBox& box, const BoxedCorners& triangle) {
   if (!is_finite(box.min) || !is_finite(box.max)) return false;
   for (int axis = 0; axis < 3; ++axis) {
     if (box.min[axis] > box.max[axis]) return false;
-    if (triangle.min[axis] > box.max[axis] || triangle.max[axis] < box.min[axis]) return false;
+    if (triangle.box.min[axis] > box.max[axis] || triangle.box.max[axis] < box.min[axis]) return false;
   }
   const auto has = [&](const Vec3d& p) {
     return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y && box.min.z <= p.z &&
            p.z <= box.max.z;
   };
   if (std::ranges::any_of(triangle.corners, has)) return true;
-  std::vector<RationalVector> polygon;
-  for (const Vec3d& corner : triangle.corners) polygon.push_back(exact(corner));
+  // Otherwise the triangle meets one of the faces, each of which is two triangles.
+  const auto corner = [&](int bits) {
+    return Vec3d{((bits & 1) != 0 ? box.max : box.min).x, ((bits & 2) != 0 ? box.max : box.min).y,
+                 ((bits & 4) != 0 ? box.max : box.min).z};
+  };
   for (int axis = 0; axis < 3; ++axis) {
-    const auto k = static_cast<std::size_t>(axis);
-    polygon = clipped(polygon, k, Rational(box.min[axis]), false);
-    polygon = clipped(polygon, k, Rational(box.max[axis]), true);
+    for (const int side : {0, 1 << axis}) {
+      const Vec3d low = corner(side), high = corner(side | (7 ^ 1 << axis));
+      for (const int other : {1 << (axis + 1) % 3, 1 << (axis + 2) % 3}) {
+        if (triangles_intersect_by_axes({low, corner(side | other), high}, triangle.corners)) return true;
+      }
+    }
   }
-  return !polygon.empty();
+  return false;
 }
 
 bool overlaps_by_brute_force(const QuerySphere& sphere, const BoxedCorners& triangle) {
@@ -199,51 +148,25 @@ bool overlaps_by_brute_force(const QuerySphere& sphere, const BoxedCorners& tria
   const double bound = increased(sphere.radius);
   for (int axis = 0; axis < 3; ++axis) {
     const double center = sphere.center[axis];
-    if (triangle.min[axis] - center > bound || center - triangle.max[axis] > bound) return false;
+    if (triangle.box.min[axis] - center > bound || center - triangle.box.max[axis] > bound) return false;
   }
   const bool has_corner_inside = std::ranges::any_of(triangle.corners, [&](const Vec3d& corner) {
     return increased(scaled_norm(corner - sphere.center)) < sphere.radius;
   });
   if (has_corner_inside) return true;
-  return squared_distance_by_integers(sphere.center, triangle.corners).value() <= squared(sphere.radius);
+  return squared_distance_by_integers(sphere.center, triangle.corners) <= squared(sphere.radius);
 }
 
 namespace {
 
-/// A distance that the objects are within: from a corner of one to the nearest one of the other, and back.
-double bound_of_distance(const PlainSurface& a, const PlainSurface& b) {
-  constexpr int turns = 4;
-  Vec3d point = a.triangles.front().corners[0];
-  double bound = 0;
-  for (int i = 0; i < turns; ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    Vec3d nearest = point;
-    for (const BoxedCorners& t : (i % 2 == 0 ? b : a).triangles) {
-      for (const Vec3d& corner : t.corners) {
-        const Vec3d gap = corner - point;
-        const double distance = scaled_norm(gap);
-        if (distance < least) std::tie(least, nearest) = std::tuple(distance, corner);
-      }
-    }
-    if (std::isinf(least)) return least;
-    point = nearest;
-    bound = least;
-  }
-  return increased(bound);
-}
-
 /// Triangles with a corner that is not finite are no part of the surface, so their other corners are none of
 /// its elements.
-PlainMovingObject finite_elements(const PlainObject& object) {
-  PlainMovingObject plain{object.positions, object.positions, object.triangles};
-  for (Triangle& triangle : plain.triangles) {
-    for (const std::uint32_t v : triangle) {
-      if (is_finite(object.positions[v])) continue;
-      triangle = {v, v, v};
-      break;
-    }
+PlainObject finite_elements(PlainObject object) {
+  for (Triangle& triangle : object.triangles) {
+    const auto wrong = std::ranges::find_if_not(triangle, [&](auto v) { return is_finite(object.end[v]); });
+    if (wrong != triangle.end()) triangle.fill(*wrong);
   }
-  return plain;
+  return object;
 }
 
 auto key_of(const NearElements& near) {
@@ -253,25 +176,21 @@ auto key_of(const NearElements& near) {
 }  // namespace
 
 std::optional<ExactPair> nearest_pair_by_brute_force(const PlainObject& a, const PlainObject& b,
-                                                     double max_distance, std::optional<double> guess,
-                                                     const Parallel& parallel) {
+                                                     double max_distance, const Parallel& parallel) {
   const auto contacts = intersecting_pairs_by_brute_force(a, b, false, parallel);
   if (!contacts.empty()) return ExactPair{contacts.front(), {}};
   const PlainSurface surface_a(a), surface_b(b);
   if (surface_a.triangles.empty() || surface_b.triangles.empty()) return {};
-  const PlainMovingObject of_a = finite_elements(a), of_b = finite_elements(b);
-  const auto nearest_within = [&](double reach) -> std::optional<ExactPair> {
-    const auto found = find_proximity_by_brute_force(of_a, of_b, false, reach, ProximityListing::features,
-                                                     ElementKinds::all, parallel);
-    const auto least = std::ranges::min_element(
-        found.near, [](const NearElements& p, const NearElements& q) { return key_of(p) < key_of(q); });
-    return least != found.near.end() ? std::optional(ExactPair{{}, *least}) : std::nullopt;
-  };
-  const double bound = std::min(max_distance, bound_of_distance(surface_a, surface_b));
-  if (guess && *guess >= 0 && increased(*guess) < bound) {
-    if (auto nearest = nearest_within(increased(*guess))) return nearest;
+  double bound = max_distance;
+  for (const BoxedCorners& t : surface_a.triangles) {
+    for (const Vec3d& corner : t.corners) bound = surface_b.bound_of_distance(corner, bound);
   }
-  return nearest_within(bound);
+  const auto found = find_proximity_by_brute_force(finite_elements(a), finite_elements(b), false,
+                                                   std::min(max_distance, increased(bound)),
+                                                   ProximityListing::features, ElementKinds::all, parallel);
+  const auto least = std::ranges::min_element(
+      found.near, [](const NearElements& p, const NearElements& q) { return key_of(p) < key_of(q); });
+  return least != found.near.end() ? std::optional(ExactPair{{}, *least}) : std::nullopt;
 }
 
 }  // namespace supple

@@ -52,10 +52,8 @@ struct ExactPair {
   std::optional<TrianglePair> contact;
   NearElements nearest;
 };
-/// Nothing when they are farther apart than `max_distance`, or when one has no finite triangle. `guess` is
-/// about their distance, if known, and saves time: elements within it are tested first.
+/// Nothing when they are farther apart than `max_distance`, or when one has no finite triangle.
 std::optional<ExactPair> nearest_pair_by_brute_force(const PlainObject& a, const PlainObject& b,
-                                                     double max_distance, std::optional<double> guess,
-                                                     const Parallel& parallel);
+                                                     double max_distance, const Parallel& parallel);
 
 }  // namespace supple

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -59,17 +58,6 @@ int turn_beside(const Vec3d& a, const Vec3d& b, const Vec3d& p) {
   return (b.y > a.y) - (b.y < a.y);
 }
 
-/// 1 on the side of the plane from which the corners go counter-clockwise.
-int side_of_plane(const TrianglePoints& t, const Vec3d& p) {
-  const Vec3d u = t[1] - t[0], v = t[2] - t[0], w = p - t[0], m = absolute(u), n = absolute(v);
-  const Vec3d size{m.y * n.z + m.z * n.y, m.z * n.x + m.x * n.z, m.x * n.y + m.y * n.x};
-  const auto sign = sign_of(dot(cross(u, v), w), 0x1p-48 * dot(size, absolute(w)) + 0x1p-1000);
-  if (sign) return *sign;
-  int lowest = 0;
-  const auto [x, a, b, c] = integers_of(p, t, lowest);
-  return dot(cross(minus(b, a), minus(c, a)), minus(x, a)).sign();
-}
-
 /// Whether the ray in the direction of x from beside the point crosses the triangle, which does not contain
 /// the point. `side` is that of the point.
 bool crosses_ahead(const TrianglePoints& t, const Vec3d& p, int side) {
@@ -120,35 +108,33 @@ Bounds bounds_of_distance(const Vec3d& point, const TrianglePoints& corners) {
   return {length > 0 ? std::max(0.0, ahead / length - slack) / factor : 0, (length + slack) / factor};
 }
 
-/// A distance that is certainly larger, and one that is certainly smaller.
-double enlarged(double distance) {
-  return distance * (1 + 0x1p-40) + 0x1p-1000;
-}
-
-double box_distance(const Vec3d& p, const Vec3d& min, const Vec3d& max) {
+double box_distance(const Vec3d& p, const QueryBox& box) {
   Vec3d gap;
-  for (int axis = 0; axis < 3; ++axis) gap[axis] = std::max({min[axis] - p[axis], p[axis] - max[axis], 0.0});
+  for (int axis = 0; axis < 3; ++axis)
+    gap[axis] = std::max({box.min[axis] - p[axis], p[axis] - box.max[axis], 0.0});
   const double squared = dot(gap, gap);
   return squared > 0x1p-900 && squared < 0x1p900 ? std::sqrt(squared) : scaled_norm(gap);
 }
 
-/// Makes the box from `min` to `max` contain the box from `low` to `high`.
-void include(const Vec3d& low, const Vec3d& high, Vec3d& min, Vec3d& max) {
-  for (int axis = 0; axis < 3; ++axis) {
-    min[axis] = std::min(min[axis], low[axis]);
-    max[axis] = std::max(max[axis], high[axis]);
-  }
-}
-
 }  // namespace
 
-Fraction squared_distance_by_integers(const Vec3d& point, const TrianglePoints& corners) {
+int side_of_plane(const TrianglePoints& t, const Vec3d& p) {
+  const Vec3d u = t[1] - t[0], v = t[2] - t[0], w = p - t[0], m = absolute(u), n = absolute(v);
+  const Vec3d size{m.y * n.z + m.z * n.y, m.z * n.x + m.x * n.z, m.x * n.y + m.y * n.x};
+  const auto sign = sign_of(dot(cross(u, v), w), 0x1p-48 * dot(size, absolute(w)) + 0x1p-1000);
+  if (sign) return *sign;
+  int lowest = 0;
+  const auto [x, a, b, c] = integers_of(p, t, lowest);
+  return dot(cross(minus(b, a), minus(c, a)), minus(x, a)).sign();
+}
+
+Rational squared_distance_by_integers(const Vec3d& point, const TrianglePoints& corners) {
   int lowest = 0;
   const auto points = integers_of(point, corners, lowest);
   const auto& [p, a, b, c] = points;
   const auto exact = [&](Integer over, Integer under) {
     (lowest > 0 ? over : under) <<= 2 * std::abs(lowest);
-    return Fraction{std::move(over), std::move(under)};
+    return Rational(over, under);
   };
   const IntegerVector u = minus(b, a), v = minus(c, a), w = minus(p, a), n = cross(u, v);
   if (const Integer whole = dot(n, n); whole != 0) {
@@ -170,66 +156,29 @@ Fraction squared_distance_by_integers(const Vec3d& point, const TrianglePoints& 
   return exact(least, least_under);
 }
 
-PlainTree::PlainTree(const std::vector<BoxedCorners>& triangles) : items_(triangles.size()) {
-  std::iota(items_.begin(), items_.end(), 0u);
-  if (!triangles.empty()) build(triangles, 0, static_cast<std::uint32_t>(triangles.size()));
-}
-
-void PlainTree::build(const std::vector<BoxedCorners>& triangles, std::uint32_t begin, std::uint32_t end) {
-  constexpr std::uint32_t most_in_leaf = 4;
-  Node node{triangles[items_[begin]].min, triangles[items_[begin]].max, begin, end};
-  for (std::uint32_t i = begin + 1; i < end; ++i)
-    include(triangles[items_[i]].min, triangles[items_[i]].max, node.min, node.max);
-  const Vec3d size = node.max - node.min;
-  node.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const std::size_t index = nodes_.size();
-  nodes_.push_back(node);
-  if (end - begin <= most_in_leaf) return;
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end,
-                   [&](std::uint32_t p, std::uint32_t q) {
-                     return std::pair(triangles[p].min[node.axis], p) <
-                            std::pair(triangles[q].min[node.axis], q);
-                   });
-  build(triangles, begin, middle);
-  nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
-  build(triangles, middle, end);
-}
-
-namespace {
-
-std::vector<BoxedCorners> boxed_corners(const PlainObject& object, bool& has_inert) {
-  std::vector<BoxedCorners> triangles;
-  for (std::uint32_t t = 0; t < object.triangles.size(); ++t) {
-    BoxedCorners boxed;
-    for (std::size_t k = 0; k < 3; ++k) boxed.corners[k] = object.positions[object.triangles[t][k]];
-    if (!std::ranges::all_of(boxed.corners, is_finite)) {
+PlainSurface::PlainSurface(const PlainObject& object) {
+  std::vector<QueryBox> boxes;
+  for (std::uint32_t t = 0; t < object.face_count; ++t) {
+    const TrianglePoints corners = object.corners(t);
+    if (!std::ranges::all_of(corners, is_finite)) {
       has_inert = true;
       continue;
     }
-    boxed.min = boxed.max = boxed.corners[0];
-    for (const Vec3d& corner : boxed.corners) include(corner, corner, boxed.min, boxed.max);
-    boxed.triangle = t;
-    triangles.push_back(boxed);
+    boxes.push_back(exact_box(corners));
+    triangles.push_back({corners, boxes.back(), t});
   }
-  return triangles;
+  tree = PlainTree(std::move(boxes));
 }
-
-}  // namespace
-
-PlainSurface::PlainSurface(const PlainObject& object)
-    : triangles(boxed_corners(object, has_inert)), tree(triangles) {}
 
 Containment PlainSurface::containment(const Vec3d& p) const {
   bool is_inside = false, is_on = false;
-  const auto is_ahead = [&](const Vec3d& min, const Vec3d& max) {
-    return p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z && p.x <= max.x;
+  const auto is_ahead = [&](const QueryBox& box) {
+    return p.y >= box.min.y && p.y <= box.max.y && p.z >= box.min.z && p.z <= box.max.z && p.x <= box.max.x;
   };
   tree.visit(p, is_ahead, [&](std::uint32_t i) {
     const BoxedCorners& t = triangles[i];
-    if (!is_ahead(t.min, t.max)) return;
     const int side = side_of_plane(t.corners, p);
-    if (side == 0 && p.x >= t.min.x && triangles_intersect_by_axes({p, p, p}, t.corners)) is_on = true;
+    if (side == 0 && p.x >= t.box.min.x && triangles_intersect_by_axes({p, p, p}, t.corners)) is_on = true;
     if (crosses_ahead(t.corners, p, side)) is_inside = !is_inside;
   });
   if (is_on) return Containment::on;
@@ -239,11 +188,8 @@ Containment PlainSurface::containment(const Vec3d& p) const {
 PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point, std::size_t guess) const {
   std::vector<std::pair<double, std::uint32_t>> candidates;
   double least = bounds_of_distance(point, triangles[guess].corners).upper;
-  const auto is_in_reach = [&](const Vec3d& min, const Vec3d& max) {
-    return box_distance(point, min, max) <= enlarged(least);
-  };
+  const auto is_in_reach = [&](const QueryBox& box) { return box_distance(point, box) <= increased(least); };
   tree.visit(point, is_in_reach, [&](std::uint32_t i) {
-    if (!is_in_reach(triangles[i].min, triangles[i].max)) return;
     const auto [lower, upper] = bounds_of_distance(point, triangles[i].corners);
     least = std::min(least, upper);
     candidates.emplace_back(lower, i);
@@ -256,6 +202,14 @@ PlainSurface::Nearest PlainSurface::nearest(const Vec3d& point, std::size_t gues
     if (side < 0 || (side == 0 && found.triangle < best->triangle)) best = std::move(found);
   }
   return *best;
+}
+
+double PlainSurface::bound_of_distance(const Vec3d& point, double bound) const {
+  const auto is_in_reach = [&](const QueryBox& box) { return box_distance(point, box) < bound; };
+  tree.visit(point, is_in_reach, [&](std::uint32_t i) {
+    bound = std::min(bound, bounds_of_distance(point, triangles[i].corners).upper);
+  });
+  return bound;
 }
 
 }  // namespace supple

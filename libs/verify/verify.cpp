@@ -13,169 +13,131 @@
 #include "verify/brute_force_impacts.hpp"
 #include "verify/brute_force_penetrations.hpp"
 #include "verify/brute_force_proximity.hpp"
-#include "verify/plain_objects.hpp"
 
 namespace supple {
 namespace {
 
-class Verification {
- public:
-  Verification(const World& world, const Question& question, const DetectResult& result)
-      : world_(world), question_(question), result_(result) {}
+/// Compares what was found for two objects, or for one object with itself. `group` has the contacts that were
+/// reported; null when there are none.
+struct PairVerification {
+  const World& world;
+  const Question& question;
+  const DetectResult& result;
+  const ObjectPair& pair;
+  VerifyReport& report;
+  const WorldObject &object_a = world[pair.a.index], &object_b = world[pair.b.index];
+  bool same_object = pair.a == pair.b;
+  PlainObject a = plain_object(object_a), b = plain_object(object_b);
+  std::vector<TrianglePair> touching{};
 
-  VerifyReport run(const CallLimits& limits, const PairShare& share) const;
+  void verify_contacts(const ContactGroup* group) {
+    touching = intersecting_pairs_by_brute_force(a, b, same_object, world.parallel);
+    std::vector<TrianglePair> reported;
+    if (group != nullptr) {
+      for (const Contact& contact : result.contacts_of(*group))
+        reported.push_back({contact.triangle_a, contact.triangle_b});
+    }
+    const std::uint64_t count = a.face_count;
+    report.triangle_pairs_checked += same_object ? count * (count - 1) / 2 : count * b.face_count;
+    report.intersecting_pairs += touching.size();
+    const auto note = [&](const std::vector<TrianglePair>& from, const std::vector<TrianglePair>& without,
+                          bool missed) {
+      std::vector<TrianglePair> difference;
+      std::ranges::set_difference(from, without, std::back_inserter(difference));
+      for (const TrianglePair& p : difference)
+        report.differences.push_back({pair.a, pair.b, p.a, p.b, missed});
+    };
+    note(touching, reported, true);
+    note(reported, touching, false);
+  }
 
- private:
-  /// These compare the contacts of two objects, or of one object with itself. `group` holds those that were
-  /// reported; null when there are none.
-  std::vector<TrianglePair> verify_contacts(const ObjectPair& pair, const ContactGroup* group,
-                                            VerifyReport& report) const;
-  void verify_impacts(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
-  void verify_proximity(const ObjectPair& pair, const ContactGroup* group, VerifyReport& report) const;
-  void verify_penetrations(const ObjectPair& pair, std::span<const TrianglePair> touching,
-                           VerifyReport& report) const;
+  void verify_impacts(const ContactGroup* group) const {
+    ImpactOptions options = question.impact.impact;
+    options.min_separation = question.separation_of(object_a, object_b);
+    const BruteForceImpacts truth =
+        find_impacts_by_brute_force(plain_object(object_a, false), plain_object(object_b, false), same_object,
+                                    options, question.impact.kinds, world.parallel);
+    report.element_pairs_checked += truth.pairs_checked;
+    report.touching_element_pairs += truth.touching.size();
+    std::span<const ContinuousContact> reported;
+    if (group != nullptr) reported = result.continuous_contacts_of(*group);
+    compare_impacts(pair, reported, truth.touching, question.impact.listing, result.continuous_contacts,
+                    report.continuous_differences);
+  }
 
-  const World& world_;
-  const Question& question_;
-  const DetectResult& result_;
+  void verify_proximity(const ContactGroup* group) const {
+    const BruteForceProximity truth = find_proximity_by_brute_force(
+        a, b, same_object, reach_of_margins(object_a.options.margin, object_b.options.margin),
+        question.proximity_listing, question.impact.kinds, world.parallel);
+    report.proximity_pairs_checked += truth.pairs_checked;
+    report.near_pairs += truth.near.size();
+    std::span<const ProximityPair> reported;
+    if (group != nullptr) reported = result.proximity_pairs_of(*group);
+    compare_proximity(pair, reported, truth.near, report.proximity_differences);
+  }
+
+  /// Both objects in each other, where the other one is solid.
+  void verify_penetrations() const {
+    if (same_object) return;
+    const auto inside = [&](const ObjectPair& in_order, const PlainObject& inner, const PlainObject& outer,
+                            std::uint32_t TrianglePair::*side) -> std::vector<ExactPenetration> {
+      if (!world[in_order.b.index].options.solid) return {};
+      std::vector<std::uint32_t> triangles;
+      for (const TrianglePair& touch : touching) triangles.push_back(touch.*side);
+      BruteForcePenetrations truth =
+          find_penetrations_by_brute_force(inner, outer, triangles, world.parallel);
+      report.vertex_triangle_pairs_checked += truth.pairs_checked;
+      std::span<const Penetration> reported;
+      std::span<const std::uint32_t> on_surface;
+      for (const PenetrationGroup& group : result.penetration_groups) {
+        if (group.a != in_order.a || group.b != in_order.b) continue;
+        reported = result.penetrations_of(group);
+        on_surface = result.vertices_on_surface_of(group);
+      }
+      std::vector<ContainedPart> parts;
+      for (const ContainedPart& part : result.contained_parts) {
+        if (part.inner == in_order.a && part.outer == in_order.b) parts.push_back(part);
+      }
+      compare_penetrations(in_order, reported, on_surface, parts, truth, report.penetration_differences);
+      std::erase_if(truth.vertices, [](const ExactPenetration& p) { return p.where != Containment::inside; });
+      report.inside_vertices += truth.vertices.size();
+      return std::move(truth.vertices);
+    };
+    const auto inside_b = inside(pair, a, b, &TrianglePair::a);
+    const auto inside_a = inside({pair.b, pair.a}, b, a, &TrianglePair::b);
+    verify_curves(pair, {{{&a, inside_b}, {&b, inside_a}}}, result, report.penetration_differences);
+  }
 };
-
-std::vector<TrianglePair> Verification::verify_contacts(const ObjectPair& pair, const ContactGroup* group,
-                                                        VerifyReport& report) const {
-  const bool same_object = pair.a == pair.b;
-  const PlainObject a = plain_object(world_[pair.a.index]);
-  const PlainObject b = same_object ? a : plain_object(world_[pair.b.index]);
-  std::vector<TrianglePair> truth = intersecting_pairs_by_brute_force(a, b, same_object, world_.parallel);
-  std::vector<TrianglePair> reported;
-  if (group != nullptr) {
-    for (const Contact& contact : result_.contacts_of(*group))
-      reported.push_back({contact.triangle_a, contact.triangle_b});
-  }
-  const std::uint64_t count_a = a.triangles.size();
-  report.triangle_pairs_checked += same_object ? count_a * (count_a - std::min<std::uint64_t>(count_a, 1)) / 2
-                                               : count_a * b.triangles.size();
-  report.intersecting_pairs += truth.size();
-  const auto note = [&](const std::vector<TrianglePair>& from, const std::vector<TrianglePair>& without,
-                        bool missed) {
-    std::vector<TrianglePair> difference;
-    std::set_difference(from.begin(), from.end(), without.begin(), without.end(),
-                        std::back_inserter(difference));
-    for (const TrianglePair& p : difference) report.differences.push_back({pair.a, pair.b, p.a, p.b, missed});
-  };
-  note(truth, reported, true);
-  note(reported, truth, false);
-  return truth;
-}
-
-void Verification::verify_impacts(const ObjectPair& pair, const ContactGroup* group,
-                                  VerifyReport& report) const {
-  const bool same_object = pair.a == pair.b;
-  const PlainMovingObject a = plain_moving_object(world_[pair.a.index]);
-  const PlainMovingObject b = same_object ? a : plain_moving_object(world_[pair.b.index]);
-  BruteForceSearch search{question_.impact.impact, question_.impact.kinds};
-  search.impact.min_separation = question_.separation_of(world_[pair.a.index], world_[pair.b.index]);
-  const BruteForceImpacts truth = find_impacts_by_brute_force(a, b, same_object, search, world_.parallel);
-  report.element_pairs_checked += truth.pairs_checked;
-  report.touching_element_pairs += truth.touching.size();
-  const auto reported =
-      group != nullptr ? result_.continuous_contacts_of(*group) : std::span<const ContinuousContact>{};
-  compare_impacts(pair, reported, truth.touching, question_.impact.listing, result_.continuous_contacts,
-                  report.continuous_differences);
-}
-
-void Verification::verify_proximity(const ObjectPair& pair, const ContactGroup* group,
-                                    VerifyReport& report) const {
-  const bool same_object = pair.a == pair.b;
-  const auto at_end = [&](ObjectId id) {
-    PlainMovingObject plain = plain_moving_object(world_[id.index]);
-    plain.start = plain.end;
-    return plain;
-  };
-  const PlainMovingObject a = at_end(pair.a), b = same_object ? a : at_end(pair.b);
-  const BruteForceProximity truth = find_proximity_by_brute_force(
-      a, b, same_object,
-      reach_of_margins(world_[pair.a.index].options.margin, world_[pair.b.index].options.margin),
-      question_.proximity_listing, question_.impact.kinds, world_.parallel);
-  report.proximity_pairs_checked += truth.pairs_checked;
-  report.near_pairs += truth.near.size();
-  const auto reported =
-      group != nullptr ? result_.proximity_pairs_of(*group) : std::span<const ProximityPair>{};
-  compare_proximity(pair, reported, truth.near, report.proximity_differences);
-}
-
-/// Both objects in each other, where the other one is solid.
-void Verification::verify_penetrations(const ObjectPair& pair, std::span<const TrianglePair> touching,
-                                       VerifyReport& report) const {
-  if (pair.a == pair.b) return;
-  const PlainObject a = plain_object(world_[pair.a.index]), b = plain_object(world_[pair.b.index]);
-  std::vector<ExactPenetration> inside_b, inside_a;
-  const auto verify_inside = [&](const ObjectPair& in_order, const PlainObject& inner,
-                                 const PlainObject& outer, std::uint32_t TrianglePair::*side,
-                                 std::vector<ExactPenetration>& found) {
-    if (!world_[in_order.b.index].options.solid) return;
-    std::vector<std::uint32_t> triangles;
-    for (const TrianglePair& touch : touching) triangles.push_back(touch.*side);
-    BruteForcePenetrations truth = find_penetrations_by_brute_force(inner, outer, triangles, world_.parallel);
-    report.vertex_triangle_pairs_checked += truth.pairs_checked;
-    report.inside_vertices += static_cast<std::uint64_t>(
-        std::count_if(truth.vertices.begin(), truth.vertices.end(),
-                      [](const ExactPenetration& p) { return p.where == Containment::inside; }));
-    std::span<const Penetration> inside;
-    std::span<const std::uint32_t> on_surface;
-    for (const PenetrationGroup& group : result_.penetration_groups) {
-      if (group.a != in_order.a || group.b != in_order.b) continue;
-      inside = result_.penetrations_of(group);
-      on_surface = result_.vertices_on_surface_of(group);
-    }
-    std::vector<ContainedPart> parts;
-    for (const ContainedPart& part : result_.contained_parts) {
-      if (part.inner == in_order.a && part.outer == in_order.b) parts.push_back(part);
-    }
-    compare_penetrations(in_order, inside, on_surface, parts, truth, report.penetration_differences);
-    std::erase_if(truth.vertices, [](const ExactPenetration& p) { return p.where != Containment::inside; });
-    found = std::move(truth.vertices);
-  };
-  verify_inside(pair, a, b, &TrianglePair::a, inside_b);
-  verify_inside({pair.b, pair.a}, b, a, &TrianglePair::b, inside_a);
-  verify_curves(pair, {{{&a, inside_b}, {&b, inside_a}}}, result_, report.penetration_differences);
-}
-
-VerifyReport Verification::run(const CallLimits& limits, const PairShare& share) const {
-  VerifyReport report;
-  auto contacts = result_.groups.begin();
-  auto impacts = result_.continuous_groups.begin();
-  auto near = result_.proximity_groups.begin();
-  const auto next_of = [](auto& next, const auto& groups, const ObjectPair& pair) {
-    const bool reported = next != groups.end() && next->a == pair.a && next->b == pair.b;
-    return reported ? &*next++ : nullptr;
-  };
-  std::size_t number = 0, next = share.first;
-  for (const ObjectPair& pair : world_.all_pairs()) {
-    report.stopped = stop_of(limits).stop_requested();
-    if (report.stopped) break;
-    const ContactGroup* const of_contacts = next_of(contacts, result_.groups, pair);
-    const ContactGroup* const of_impacts = next_of(impacts, result_.continuous_groups, pair);
-    const ContactGroup* const of_proximity = next_of(near, result_.proximity_groups, pair);
-    if (number++ != next) continue;
-    next += share.stride;
-    std::vector<TrianglePair> touching;
-    if (question_.has_intersections()) touching = verify_contacts(pair, of_contacts, report);
-    if (question_.is_continuous()) verify_impacts(pair, of_impacts, report);
-    if (question_.has_proximity()) verify_proximity(pair, of_proximity, report);
-    if (question_.has_penetration()) verify_penetrations(pair, touching, report);
-    if (!result_.manifolds.empty()) {
-      const PlainObject a = plain_object(world_[pair.a.index]), b = plain_object(world_[pair.b.index]);
-      supple::verify_manifolds(pair, {&a, &b}, result_, report);
-    }
-  }
-  return report;
-}
 
 }  // namespace
 
 VerifyReport verify(const World& world, const Question& question, const DetectResult& result,
                     const CallLimits& limits, const PairShare& share) {
-  return Verification(world, question, result).run(limits, share);
+  VerifyReport report;
+  auto contacts = result.groups.begin();
+  auto impacts = result.continuous_groups.begin();
+  auto near = result.proximity_groups.begin();
+  std::size_t number = 0, next = share.first;
+  for (const ObjectPair& pair : world.all_pairs()) {
+    report.stopped = stop_of(limits).stop_requested();
+    if (report.stopped) break;
+    const auto group_in = [&](auto& place, const auto& groups) {
+      const bool is_reported = place != groups.end() && place->a == pair.a && place->b == pair.b;
+      return is_reported ? &*place++ : nullptr;
+    };
+    const ContactGroup* const of_contacts = group_in(contacts, result.groups);
+    const ContactGroup* const of_impacts = group_in(impacts, result.continuous_groups);
+    const ContactGroup* const of_proximity = group_in(near, result.proximity_groups);
+    if (number++ != next) continue;
+    next += share.stride;
+    PairVerification verification{world, question, result, pair, report};
+    if (question.has_intersections()) verification.verify_contacts(of_contacts);
+    if (question.is_continuous()) verification.verify_impacts(of_impacts);
+    if (question.has_proximity()) verification.verify_proximity(of_proximity);
+    if (question.has_penetration()) verification.verify_penetrations();
+    verify_manifolds(pair, {&verification.a, &verification.b}, result, report);
+  }
+  return report;
 }
 
 VerifyReport verify(const Scene& scene, const CallLimits& limits) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,7 +13,6 @@
 #include "supple/result_descriptions.hpp"
 #include "supple/verify.hpp"
 #include "verify/brute_force_queries.hpp"
-#include "verify/plain_objects.hpp"
 
 namespace supple {
 namespace {
@@ -29,18 +27,14 @@ PlainObject object_of_queries(const WorldObject& object) {
 /// Calls `check(i)` for all i below `count`, on all threads. It returns both answers when they differ.
 template <class Check>
 std::vector<WrongAnswer> wrong_answers(const Parallel& parallel, std::size_t count, const Check& check) {
-  std::vector<std::vector<WrongAnswer>> of_workers(parallel.worker_count());
-  parallel.for_ranges(count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-    for (std::size_t i = begin; i < end; ++i) {
-      std::optional<WrongAnswer> wrong = check(i);
-      if (!wrong) continue;
-      wrong->query = i;
-      of_workers[worker].push_back(*std::move(wrong));
-    }
+  std::vector<std::optional<WrongAnswer>> wrong(count);
+  parallel.for_ranges(count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t) {
+    for (std::size_t i = begin; i < end; ++i) wrong[i] = check(i);
   });
   std::vector<WrongAnswer> all;
-  for (auto& part : of_workers) std::move(part.begin(), part.end(), std::back_inserter(all));
-  std::ranges::sort(all, {}, &WrongAnswer::query);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (wrong[i]) all.push_back({i, wrong[i]->found, wrong[i]->expected});
+  }
   return all;
 }
 
@@ -60,28 +54,27 @@ std::optional<WrongAnswer> compare_lists(std::span<const Found> found, std::span
                      item(differ.in2 == truth.end(), [&] { return describe_truth(*differ.in2); })};
 }
 
-/// The items of a list for each query. They must stand by ascending query, like those of the scene.
+/// Throws an error unless the items stand by ascending query, like those of the scene.
 template <class Item>
-class ItemsOfQueries {
- public:
-  ItemsOfQueries(std::span<const Item> items, std::size_t count, const char* call)
-      : items_(items), first_(count + 1, 0) {
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      if (items[i].query >= count || (i > 0 && items[i].query < items[i - 1].query))
-        fail(std::string(call) + ": item " + std::to_string(i) + " of the list is for query " +
-             std::to_string(items[i].query) + "; give the list as the query returned it");
-      ++first_[items[i].query + 1];
-    }
-    for (std::size_t i = 0; i < count; ++i) first_[i + 1] += first_[i];
+void check_order(std::span<const Item> items, std::size_t count, const char* call) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].query >= count || (i > 0 && items[i].query < items[i - 1].query))
+      fail(std::string(call) + ": item " + std::to_string(i) + " of the list is for query " +
+           std::to_string(items[i].query) + "; give the list as the query returned it");
   }
-  std::span<const Item> of(std::size_t query) const {
-    return items_.subspan(first_[query], first_[query + 1] - first_[query]);
-  }
+}
+template <class Item>
+std::span<const Item> items_of(std::span<const Item> items, std::size_t query) {
+  const auto found = std::ranges::equal_range(items, query, {}, &Item::query);
+  return {found.begin(), found.end()};
+}
 
- private:
-  std::span<const Item> items_;
-  std::vector<std::size_t> first_;
-};
+/// Both answers, or that there is none.
+template <class Answer, class Describe>
+WrongAnswer wrong_answer(const std::optional<Answer>& found, const std::optional<Answer>& truth,
+                         const Describe& describe) {
+  return {0, found ? describe(*found) : "nothing", truth ? describe(*truth) : "nothing"};
+}
 
 /// Names objects in the words of answers, also those that are not in the scene.
 class AnswerWords {
@@ -90,6 +83,10 @@ class AnswerWords {
 
   std::string triangle(ObjectId object, std::uint32_t triangle) const {
     return "triangle " + std::to_string(triangle) + " of " + name(object);
+  }
+  std::string hit(const RayHit& hit, bool counts) const {
+    const std::string text = triangle(hit.object, hit.triangle) + ", t " + text_of(hit.t);
+    return counts ? text + ", hits " + std::to_string(hit.hits) : text;
   }
   std::string name(ObjectId object) const {
     const std::string number = "object " + std::to_string(object.index);
@@ -118,10 +115,23 @@ PlainScene plain_scene(const World& world, const QueryFilter& seen, const char* 
   return plain;
 }
 
+RayHit rounded_hit(const PlainScene& scene, const ExactHit& exact, std::uint64_t count) {
+  RayHit hit;
+  hit.object = scene.ids[exact.surface];
+  hit.triangle = exact.triangle;
+  hit.t = exact.t.convert_to<double>();
+  hit.hits = count;
+  return hit;
+}
+bool is_same_hit(const RayHit& found, const RayHit& truth, const Rational& t) {
+  return found.object == truth.object && found.triangle == truth.triangle && found.hits == truth.hits &&
+         is_accurate(found.t, t * t);
+}
+
 template <class Region>
 std::vector<WrongAnswer> wrong_overlaps(const World& world, std::span<const Region> regions,
                                         std::span<const Overlap> overlaps, const QueryFilter& seen) {
-  const ItemsOfQueries<Overlap> found(overlaps, regions.size(), "verify_overlaps");
+  check_order(overlaps, regions.size(), "verify_overlaps");
   const PlainScene plain = plain_scene(world, seen, "verify_overlaps");
   const AnswerWords words(world);
   return wrong_answers(world.parallel, regions.size(), [&](std::size_t i) {
@@ -133,7 +143,8 @@ std::vector<WrongAnswer> wrong_overlaps(const World& world, std::span<const Regi
       }
     }
     const auto describe = [&](const Overlap& o) { return words.triangle(o.object, o.triangle); };
-    return compare_lists(found.of(i), std::span<const Overlap>(truth), std::equal_to<>(), describe, describe);
+    return compare_lists(items_of(overlaps, i), std::span<const Overlap>(truth), std::equal_to<>(), describe,
+                         describe);
   });
 }
 /// Both answers in words when they differ. `found` is null when nothing was found.
@@ -141,14 +152,11 @@ std::optional<WrongAnswer> wrong_distance(const World& world, const ObjectPair& 
                                           const ProximityPair* found) {
   const auto with_extra_elements = [&](ObjectId id) {
     PlainObject plain = object_of_queries(world[id.index]);
-    plain.triangles = plain_moving_object(world[id.index]).triangles;
+    plain.face_count = plain.triangles.size();
     return plain;
   };
   const PlainObject a = with_extra_elements(pair.a), b = with_extra_elements(pair.b);
-  std::optional<double> guess;
-  if (found != nullptr) guess = found->distance;
-  const std::optional<ExactPair> truth =
-      nearest_pair_by_brute_force(a, b, max_distance, guess, world.parallel);
+  const std::optional<ExactPair> truth = nearest_pair_by_brute_force(a, b, max_distance, world.parallel);
   const AnswerWords words(world);
   const auto is_on_first_contact = [&] {
     const auto corners_of = [](FeatureKind kind, const std::array<std::uint32_t, 2>& ids,
@@ -156,10 +164,10 @@ std::optional<WrongAnswer> wrong_distance(const World& world, const ObjectPair& 
                                std::uint32_t triangle) -> std::optional<TrianglePoints> {
       const Triangle& whole = object.triangles[triangle];
       const auto has = [&](std::uint32_t v) { return std::ranges::find(whole, v) != whole.end(); };
-      const auto& at = object.positions;
+      const auto& at = object.end;
       if (kind == FeatureKind::face) {
         if (ids != std::array{triangle, triangle}) return {};
-        return TrianglePoints{at[whole[0]], at[whole[1]], at[whole[2]]};
+        return object.corners(triangle);
       }
       if (!has(ids[0]) || !has(ids[1]) || (kind == FeatureKind::vertex) != (ids[0] == ids[1])) return {};
       return TrianglePoints{at[ids[0]], at[ids[1]], at[ids[1]]};
@@ -206,43 +214,41 @@ std::vector<WrongAnswer> verify_closest(const Scene& scene, std::span<const Vec3
   if (query.signed_distance) check_closed(world, query.filter, "verify_closest");
   const PlainScene plain = plain_scene(world, query.filter, "verify_closest");
   const AnswerWords words(world);
-  const auto describe = [&](ObjectId object, std::uint32_t triangle, const Feature& feature, double distance,
-                            const std::array<double, 3>& weights) {
-    return words.triangle(object, triangle) + " at " + word_of(feature.kind) + " " +
-           std::to_string(feature.index) + ", distance " + text_of(distance) + ", barycentric " +
-           text_of(weights[0]) + " " + text_of(weights[1]) + " " + text_of(weights[2]);
+  const auto describe = [&](const ClosestPoint& p) {
+    return words.triangle(p.object, p.triangle) + " at " + word_of(p.feature.kind) + " " +
+           std::to_string(p.feature.index) + ", distance " + text_of(p.distance) + ", barycentric " +
+           text_of(p.barycentric[0]) + " " + text_of(p.barycentric[1]) + " " + text_of(p.barycentric[2]);
   };
   return wrong_answers(world.parallel, points.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
     std::optional<ExactNearest> truth;
     if (is_finite(points[i])) truth = nearest_by_brute_force(points[i], plain.surfaces, query.max_distance);
     const bool is_inside = truth && query.signed_distance &&
                            plain.surfaces[truth->surface].containment(points[i]) == Containment::inside;
+    std::optional<ClosestPoint> expected;
+    if (truth) {
+      const double distance = rounded_root(truth->distance.squared);
+      expected.emplace();
+      expected->object = plain.ids[truth->surface];
+      expected->triangle = truth->triangle;
+      expected->feature = truth->distance.on_b;
+      expected->distance = is_inside ? -distance : distance;
+      for (std::size_t k = 0; k < 3; ++k)
+        expected->barycentric[k] = truth->distance.weights_b[k].convert_to<double>();
+    }
     const std::optional<ClosestPoint>& found = results[i];
     const auto is_right = [&] {
-      if (found.has_value() != truth.has_value()) return false;
-      if (!found) return true;
+      if (!found || !truth) return !found && !truth;
       for (std::size_t k = 0; k < 3; ++k) {
         if (!std::isfinite(found->barycentric[k])) return false;
         const Rational error = Rational(found->barycentric[k]) - truth->distance.weights_b[k];
         if (abs(error) > Rational(0x1p-50)) return false;
       }
-      return found->object == plain.ids[truth->surface] && found->triangle == truth->triangle &&
-             found->feature == truth->distance.on_b &&
+      return found->object == expected->object && found->triangle == expected->triangle &&
+             found->feature == expected->feature &&
              is_accurate(is_inside ? -found->distance : found->distance, truth->distance.squared);
     };
     if (is_right()) return {};
-    std::string of_found = "nothing", of_truth = "nothing";
-    if (found)
-      of_found =
-          describe(found->object, found->triangle, found->feature, found->distance, found->barycentric);
-    if (truth) {
-      std::array<double, 3> weights;
-      for (std::size_t k = 0; k < 3; ++k) weights[k] = truth->distance.weights_b[k].convert_to<double>();
-      const double distance = rounded_root(truth->distance.squared);
-      of_truth = describe(plain.ids[truth->surface], truth->triangle, truth->distance.on_b,
-                          is_inside ? -distance : distance, weights);
-    }
-    return WrongAnswer{0, of_found, of_truth};
+    return wrong_answer(found, expected, describe);
   });
 }
 
@@ -253,50 +259,30 @@ std::vector<WrongAnswer> verify_cast(const Scene& scene, std::span<const Ray> ra
   check_counts(rays.size(), results.size(), "verify_cast");
   const PlainScene plain = plain_scene(world, query.filter, "verify_cast");
   const AnswerWords words(world);
-  const auto describe = [&](ObjectId object, std::uint32_t triangle, double t, std::uint64_t hits) {
-    const std::string text = words.triangle(object, triangle) + ", t " + text_of(t);
-    return query.count_hits ? text + ", hits " + std::to_string(hits) : text;
-  };
   return wrong_answers(world.parallel, rays.size(), [&](std::size_t i) -> std::optional<WrongAnswer> {
     const std::vector<ExactHit> truth = hits_by_brute_force(rays[i], plain.surfaces);
+    std::optional<RayHit> first;
+    if (!truth.empty()) first = rounded_hit(plain, truth.front(), query.count_hits ? truth.size() : 1);
     const std::optional<RayHit>& found = results[i];
-    const std::uint64_t hits = query.count_hits ? truth.size() : 1;
-    const bool is_right = found && !truth.empty()
-                              ? found->object == plain.ids[truth.front().surface] &&
-                                    found->triangle == truth.front().triangle && found->hits == hits &&
-                                    is_accurate(found->t, truth.front().t * truth.front().t)
-                              : !found && truth.empty();
-    if (is_right) return {};
-    std::string of_found = "nothing", of_truth = "nothing";
-    if (found) of_found = describe(found->object, found->triangle, found->t, found->hits);
-    if (!truth.empty())
-      of_truth = describe(plain.ids[truth.front().surface], truth.front().triangle,
-                          truth.front().t.convert_to<double>(), hits);
-    return WrongAnswer{0, of_found, of_truth};
+    if (found && first ? is_same_hit(*found, *first, truth.front().t) : !found && !first) return {};
+    return wrong_answer(found, first, [&](const RayHit& hit) { return words.hit(hit, query.count_hits); });
   });
 }
 
 std::vector<WrongAnswer> verify_cast_all(const Scene& scene, std::span<const Ray> rays,
                                          std::span<const ListedRayHit> hits, const QueryFilter& seen) {
   const World& world = SceneAccess::of(scene).world;
-  const ItemsOfQueries<ListedRayHit> found(hits, rays.size(), "verify_cast_all");
+  check_order(hits, rays.size(), "verify_cast_all");
   const PlainScene plain = plain_scene(world, seen, "verify_cast_all");
   const AnswerWords words(world);
   return wrong_answers(world.parallel, rays.size(), [&](std::size_t i) {
     const std::vector<ExactHit> truth = hits_by_brute_force(rays[i], plain.surfaces);
-    const auto describe = [&](ObjectId object, std::uint32_t triangle, double t, std::uint64_t count) {
-      return words.triangle(object, triangle) + ", t " + text_of(t) + ", hits " + std::to_string(count);
-    };
+    const auto rounded = [&](const ExactHit& t) { return rounded_hit(plain, t, truth.size()); };
     return compare_lists(
-        found.of(i), std::span(truth),
-        [&](const ListedRayHit& f, const ExactHit& t) {
-          return f.hit.object == plain.ids[t.surface] && f.hit.triangle == t.triangle &&
-                 f.hit.hits == truth.size() && is_accurate(f.hit.t, t.t * t.t);
-        },
-        [&](const ListedRayHit& f) { return describe(f.hit.object, f.hit.triangle, f.hit.t, f.hit.hits); },
-        [&](const ExactHit& t) {
-          return describe(plain.ids[t.surface], t.triangle, t.t.convert_to<double>(), truth.size());
-        });
+        items_of(hits, i), std::span(truth),
+        [&](const ListedRayHit& f, const ExactHit& t) { return is_same_hit(f.hit, rounded(t), t.t); },
+        [&](const ListedRayHit& f) { return words.hit(f.hit, true); },
+        [&](const ExactHit& t) { return words.hit(rounded(t), true); });
   });
 }
 
@@ -339,27 +325,30 @@ std::vector<WrongAnswer> verify_distances(const Scene& scene, double max_distanc
   check_distance(max_distance, "verify_distances");
   const AnswerWords words(world);
   std::vector<WrongAnswer> wrong;
-  const ProximityPair* next = found.data();
-  const ProximityPair* const end = next + found.size();
   std::uint64_t place = 0;
-  const auto note_added = [&] {
+  const auto note_added = [&](const ProximityPair& added) {
     wrong.push_back({place,
-                     words.name(next->object_a) + " and " + words.name(next->object_b) + ": distance " +
-                         text_of(next->distance),
+                     words.name(added.object_a) + " and " + words.name(added.object_b) + ": distance " +
+                         text_of(added.distance),
                      "no such pair at this place of the list"});
-    ++next;
   };
-  const auto objects_of = [](const ProximityPair& pair) { return ObjectPair{pair.object_a, pair.object_b}; };
-  for (const ObjectPair& pair : world.all_pairs()) {
-    if (pair.a == pair.b) continue;
-    while (next != end && objects_of(*next) < pair) note_added();
-    const bool is_listed = next != end && objects_of(*next) == pair;
-    if (const auto differs = wrong_distance(world, pair, max_distance, is_listed ? next : nullptr))
+  const auto compare = [&](const ObjectPair& pair, const ProximityPair* listed) {
+    if (const auto differs = wrong_distance(world, pair, max_distance, listed))
       wrong.push_back({place, differs->found, differs->expected});
-    if (is_listed) ++next;
     ++place;
-  }
-  while (next != end) note_added();
+  };
+  std::vector<ObjectPair> pairs = world.all_pairs();
+  std::erase_if(pairs, [](const ObjectPair& pair) { return pair.a == pair.b; });
+  const auto objects_of = [](const auto& of) {
+    if constexpr (requires { of.object_a; })
+      return ObjectPair{of.object_a, of.object_b};
+    else
+      return of;
+  };
+  match(
+      found, std::span<const ObjectPair>(pairs), objects_of, note_added,
+      [&](const ObjectPair& pair) { compare(pair, nullptr); },
+      [&](const ProximityPair& listed, const ObjectPair& pair) { compare(pair, &listed); });
   return wrong;
 }
 

@@ -46,7 +46,7 @@ class FileWriter {
   FileWriter& put(Scalar value) {
     if (encoding_ == text) {
       if constexpr (std::is_floating_point_v<Scalar>) {
-        append_double(bytes_, double(value));
+        append_number(bytes_, double(value));
       } else {
         bytes_ += std::to_string(value);
       }

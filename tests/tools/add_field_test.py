@@ -46,10 +46,10 @@ class AddField(unittest.TestCase):
         before = self.columns()
         self.change("include/supple/penetration.hpp", "  Vec3d normal{};  ///< unit vector from the vertex",
                     "  double age = 0;\n  Vec3d normal{};  ///< unit vector from the vertex")
-        line = '    visit_field(visitor, "vertex", &Row::vertex, "Vertex of object a", role::key(Names::vertex, \'a\'));\n' \
-               '    visit_field(visitor, "triangle", &Row::triangle'
+        line = '    field("vertex", &Row::vertex, "Vertex of object a", role::key(Names::vertex, \'a\'));\n' \
+               '    field("triangle", &Row::triangle'
         self.change("libs/describe/include/supple/record_descriptions.hpp", line,
-                    '    visit_field(visitor, "age", &Row::age, "Seconds since the vertex entered", {}, "s");\n' + line)
+                    '    field("age", &Row::age, "Seconds since the vertex entered", {}, "s");\n' + line)
         self.assertEqual(set(self.columns()) - set(before), {"penetrations/age"})
 
 

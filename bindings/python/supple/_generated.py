@@ -457,6 +457,8 @@ CONTRACTS = {
         'See `PositionsView::point_stride` in supple/views.hpp.',
     'PositionsView::size':
         'See `PositionsView::size` in supple/views.hpp.',
+    'RecordDescription::visit':
+        'Calls `visitor(field)` for each member.',
     'Recorder::add':
         'Adds a frame: the positions of each object, in the order of the header. Throws `Error` when a size differs, or when the disk is full; flushed frames stay readable. When memory runs out in a function of the recorder, the recording ends after the flushed frames, too. Objects that are elsewhere have no positions; only rank 0 reads the time and the result.',
     'Recorder::close':
@@ -784,7 +786,7 @@ CONTRACTS = {
     'value_of_word':
         'The value of a word; nothing when no value has this word.',
     'verify':
-        'Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`; exact boxes, sorted along an axis or in a tree, exclude pairs that are apart. Quadratic at worst: about a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of contacts. A stop ends it after the pair of objects that it compares.',
+        'Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`; a tree of exact boxes excludes pairs that are apart. Quadratic at worst: about a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of contacts. A stop ends it after the pair of objects that it compares.',
     'verify_any_contact':
         'See `verify_any_contact` in supple/verify.hpp.',
     'verify_cast':
@@ -825,8 +827,6 @@ CONTRACTS = {
         'The address for those who may only watch, with another secret token; empty without `AttachOptions.spectators`.',
     'viewer::attach':
         "Shows a scene in a page while the program runs: from now on, `detect` shows its result. Replaces the observer of the scene. The page can pause the program in `detect`, take single steps, and set breaks. The page reads the user's scene itself, only while `detect` waits. Threads: one for the session, one for the network. Throws `Error` when an option is out of range, when the scene does not detect the kind of contacts that a break needs, when the address is not available, and when the library was built without SUPPLE_BUILD_VIEWER.",
-    'visit_field':
-        'Visits a member of a record; `key` is its name for users.',
     'welded':
         'The mesh with the first of the vertices at the same position in place of all: what `ObjectOptions.weld` makes of it. Vertices keep their numbers. O(n).',
     'with_included':

@@ -15,8 +15,7 @@ inline constexpr std::array words<LengthUnit>{"file", "um", "mm", "cm", "m", "km
 template <>
 struct Description<CoordinateConversion> {
   static constexpr const char* name = "CoordinateConversion";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = CoordinateConversion;
     visitor(Field<Options, UpAxis>{
         .name = "up",

@@ -136,33 +136,28 @@ class BottomUpMerger {
   std::vector<Choice> choices_;
 };
 
-/// A triangle and its place on the curve.
-struct Item {
-  std::uint32_t place, triangle;
-};
-
 /// Makes the octree from the clusters of all levels.
 class BottomUpSplitter {
  public:
   /// `places` are the triangles along the curve. `levels` are the clusters, those of triangles first; the
   /// last level has at most one cluster.
   BottomUpSplitter(std::span<const CurvePlace> places, std::span<const Level> levels, std::uint32_t deepest)
-      : deepest_(deepest), begins_(levels.size()) {
-    std::vector<std::uint32_t> order(places.empty() ? 0 : 1, 0), members;
+      : places_(places), deepest_(deepest), begins_(levels.size()) {
+    std::vector<std::uint32_t> members;
+    order_.assign(places.empty() ? 0 : 1, 0);
     for (std::size_t l = levels.size(); l-- > 0;) {
       const Level& level = levels[l];
       std::uint32_t begin = 0;
       members.clear();
-      for (const std::uint32_t c : order) {
+      for (const std::uint32_t c : order_) {
         begins_[l].push_back(begin);
         begin += level.triangles[c];
         members.insert(members.end(), level.members.begin() + level.first[c],
                        level.members.begin() + level.first[c + 1]);
       }
       begins_[l].push_back(begin);
-      std::swap(order, members);
+      std::swap(order_, members);
     }
-    for (const std::uint32_t place : order) items_.push_back({place, places[place].triangle});
   }
 
   bool should_split(TriangleRange range, std::uint32_t level) const {
@@ -184,11 +179,9 @@ class BottomUpSplitter {
   /// Along the curve, so that triangles that are tested together are near each other.
   std::vector<std::uint32_t> finish(std::span<const TriangleRange> leaves) {
     for (const TriangleRange leaf : leaves)
-      std::ranges::sort(std::span(items_).subspan(leaf.begin, leaf.size()), {}, &Item::place);
-    std::vector<std::uint32_t> order;
-    order.reserve(items_.size());
-    for (const Item& item : items_) order.push_back(item.triangle);
-    return order;
+      std::ranges::sort(std::span(order_).subspan(leaf.begin, leaf.size()));
+    for (std::uint32_t& place : order_) place = places_[place].triangle;
+    return std::move(order_);
   }
 
  private:
@@ -197,8 +190,9 @@ class BottomUpSplitter {
     return std::ranges::upper_bound(begins_[level], range.begin);
   }
 
-  std::uint32_t deepest_;  ///< level
-  std::vector<Item> items_;
+  std::span<const CurvePlace> places_;
+  std::uint32_t deepest_;             ///< level
+  std::vector<std::uint32_t> order_;  ///< the places of the triangles
   /// By level: the first triangle of each cluster, then the number of triangles.
   std::vector<std::vector<std::uint32_t>> begins_;
 };

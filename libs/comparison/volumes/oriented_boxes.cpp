@@ -1,11 +1,15 @@
-#include "comparison/volumes/oriented_boxes.hpp"
+#include "comparison/volumes/volumes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "comparison/volumes/volume_kernels.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
@@ -16,11 +20,6 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-Matrix covariance(const SurfaceMoments& moments) {
-  const auto& [xx, yy, zz, xy, yz, zx] = moments.second;
-  return {{{xx, xy, zx}, {xy, yy, yz}, {zx, yz, zz}}};
-}
-
 /// Calls `visit(place, p[i] q[i])` for the six products of second moments.
 template <class Visit>
 void for_each_product(Vec3d p, Vec3d q, const Visit& visit) {
@@ -30,6 +29,33 @@ void for_each_product(Vec3d p, Vec3d q, const Visit& visit) {
   visit(3, p.x * q.y);
   visit(4, p.y * q.z);
   visit(5, p.z * q.x);
+}
+
+/// Area, centre of area and second moments about it of some triangles. Sums are those of the union. There is
+/// no common origin, so nothing cancels far away from it, and moments depend on nothing but their triangles.
+struct SurfaceMoments {
+  double area = 0;
+  Vec3d center{};
+  std::array<double, 6> second{};  ///< integrals of xx, yy, zz, xy, yz, zx
+
+  /// The parallel axis theorem.
+  SurfaceMoments& operator+=(const SurfaceMoments& other) {
+    if (!(other.area > 0)) return *this;
+    if (!(area > 0)) return *this = other;
+    const Vec3d between = other.center - center;
+    const double sum = area + other.area, share = other.area / sum;
+    for (std::size_t i = 0; i < second.size(); ++i) second[i] += other.second[i];
+    for_each_product(between, between,
+                     [&](std::size_t place, double product) { second[place] += area * share * product; });
+    center += share * between;
+    area = sum;
+    return *this;
+  }
+};
+
+Matrix covariance(const SurfaceMoments& moments) {
+  const auto& [xx, yy, zz, xy, yz, zx] = moments.second;
+  return {{{xx, xy, zx}, {xy, yy, yz}, {zx, yz, zz}}};
 }
 
 /// Sets the entry (i, j) of a symmetric matrix to zero by a rotation, and rotates the vectors likewise.
@@ -83,6 +109,25 @@ struct OrientedBox {
   Vec3f half_lengths{};
 };
 
+/// Three axes at right angles, of unit length except for rounding, the point where distances along them
+/// begin, and the lowest and the highest distance along each axis; inverted without points.
+struct AxisExtents {
+  static constexpr float inverted = std::numeric_limits<float>::infinity();
+  std::array<Vec3f, 3> axes{};
+  Vec3d origin{};
+  std::array<float, 3> low{inverted, inverted, inverted}, high{-inverted, -inverted, -inverted};
+
+  /// The distance of a point has an error of at most 2^-21 of the distance between the point and the origin.
+  void extend(const Vec3d& point) {
+    const Vec3f p = in_float(point - origin);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float along = dot(p, axes[k]);
+      low[k] = std::min(low[k], along);
+      high[k] = std::max(high[k], along);
+    }
+  }
+};
+
 OrientedBox aligned_box(const Aabb& box) {
   OrientedBox result;
   for (int axis = 0; axis < 3; ++axis) {
@@ -122,62 +167,39 @@ SurfaceMoments moments_of(const RefittedOctree& octree, std::uint32_t begin, std
   return sum;
 }
 
-/// Fits an oriented box to some triangles.
-class OrientedBoxFit {
- public:
-  /// `box` is the box of the triangles.
-  OrientedBoxFit(const SurfaceMoments& moments, const Aabb& box);
-
-  /// Whether `box` needs the extents of the vertices. Otherwise, the result is known from `box` alone.
-  bool needs_extents() const { return needs_extents_; }
-  const AxisFrame& frame() const { return frame_; }
-  /// The result. `extents` are those of all vertices in `frame`.
-  OrientedBox box(const AxisExtents& extents) const;
-
- private:
-  OrientedBox aligned_;
-  AxisFrame frame_;
-  bool needs_extents_ = false;
-};
-
-OrientedBoxFit::OrientedBoxFit(const SurfaceMoments& moments, const Aabb& box) {
-  if (box.empty()) return;
+/// Fits an oriented box to triangles with these moments and this box. `extend(extents)` extends extents by
+/// all of their vertices. The growth covers the errors of the extents and the rounding of the axes, which
+/// makes them up to 2^-22 oblique.
+template <class Extend>
+OrientedBox fitted_box(const SurfaceMoments& moments, const Aabb& box, const Extend& extend) {
+  if (box.empty()) return {};
   constexpr float largest = 0x1p60f;  // squares of areas do not overflow
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(box.min[axis] >= -largest && box.max[axis] <= largest)) {
-      constexpr float inf = std::numeric_limits<float>::infinity();
-      aligned_.half_lengths = {inf, inf, inf};
-      return;
-    }
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    if (!(box.min[axis] >= -largest && box.max[axis] <= largest)) return {.half_lengths = {inf, inf, inf}};
   }
-  aligned_ = aligned_box(box);
-  if (!(moments.area > 0)) return;
+  const OrientedBox aligned = aligned_box(box);
+  if (!(moments.area > 0)) return aligned;
   const std::array<Vec3d, 3> axes = eigenvectors(covariance(moments));
-  for (std::size_t k = 0; k < 3; ++k) frame_.axes[k] = in_float(axes[k]);
-  frame_.origin = in_double(aligned_.center);
-  needs_extents_ = true;
-}
-
-/// The growth covers the errors of the extents and the rounding of the axes, which makes them up to 2^-22
-/// oblique.
-OrientedBox OrientedBoxFit::box(const AxisExtents& extents) const {
-  if (!needs_extents_) return aligned_;
-  OrientedBox fitted{{}, frame_.axes, {}};
-  Vec3d center = frame_.origin;
+  AxisExtents extents{.axes = {in_float(axes[0]), in_float(axes[1]), in_float(axes[2])},
+                      .origin = in_double(aligned.center)};
+  extend(extents);
+  OrientedBox fitted{{}, extents.axes, {}};
+  Vec3d center = extents.origin;
   double reach = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double low = extents.low[k], high = extents.high[k];
-    center += (low + high) / 2 * in_double(frame_.axes[k]);
+    center += (low + high) / 2 * in_double(extents.axes[k]);
     reach += std::max(std::abs(low), std::abs(high));
   }
   fitted.center = in_float(center);
   const double growth = 0x1p-19 * reach + std::numeric_limits<float>::min();
   for (std::size_t k = 0; k < 3; ++k) {
-    const double along = dot(in_double(frame_.axes[k]), in_double(fitted.center) - frame_.origin);
+    const double along = dot(in_double(extents.axes[k]), in_double(fitted.center) - extents.origin);
     fitted.half_lengths[static_cast<int>(k)] =
         round_up(std::max(extents.high[k] - along, along - extents.low[k]) + growth);
   }
-  return half_surface(fitted.half_lengths) < half_surface(aligned_.half_lengths) ? fitted : aligned_;
+  return half_surface(fitted.half_lengths) < half_surface(aligned.half_lengths) ? fitted : aligned;
 }
 
 void set_child(ChildOrientedBoxes& boxes, int child, const OrientedBox& box) {
@@ -190,93 +212,84 @@ void set_child(ChildOrientedBoxes& boxes, int child, const OrientedBox& box) {
 }
 
 /// Extends the extents by the vertices of a child.
-void extend_by_child(const AxisFrame& frame, const RefittedOctree& octree, std::uint32_t n, int child,
-                     AxisExtents& extents) {
+void extend_by_child(const RefittedOctree& octree, std::uint32_t n, int child, AxisExtents& extents) {
   const OctreeNode& node = octree.nodes[n];
-  if (!octree.inert.empty()) {
-    for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
-      if (octree.inert[t] == 0) extend_extents(frame, octree.vertices, octree.triangles[t], extents);
-    }
+  if (node.is_inner(child) && octree.inert.empty()) {
+    const std::uint32_t below = node.child_node(child);
+    for (int k = 0; k < octree.nodes[below].child_count; ++k) extend_by_child(octree, below, k, extents);
     return;
   }
-  // The vertices of consecutive children of consecutive nodes are consecutive.
-  const auto extend_by = [&](std::size_t begin_child, std::size_t end_child) {
-    const std::uint32_t first = octree.leaves.first[begin_child], last = octree.leaves.first[end_child];
-    extend_extents(frame, octree.vertices, {octree.leaves.vertices + first, last - first}, extents);
-  };
-  if (!node.is_inner(child)) {
-    const std::size_t leaf = std::size_t{n} * node_width + static_cast<std::size_t>(child);
-    return extend_by(leaf, leaf + 1);
-  }
-  // Nodes are in order of levels, so the nodes below in one level are consecutive.
-  const auto count = static_cast<std::uint32_t>(octree.nodes.size());
-  for (std::uint32_t begin = node.child_node(child), end = begin + 1; begin < end;) {
-    extend_by(std::size_t{begin} * node_width, std::size_t{end} * node_width);
-    begin = octree.nodes[begin].first_child;
-    end = end < count ? octree.nodes[end].first_child : count;
-  }
+  for_each_vertex(octree, n, child, [&](std::uint32_t vertex) { extents.extend(octree.vertices[vertex]); });
 }
+
+class OrientedBoxes final : public NodeVolumes {
+ public:
+  explicit OrientedBoxes(std::size_t nodes)
+      : NodeVolumes(BoundingVolume::obb, nodes), boxes_(nodes == 0 ? 0 : nodes + 1), moments_(nodes) {}
+
+  void refit(const RefittedOctree& octree, std::uint32_t begin, std::uint32_t end) override {
+    std::array<SurfaceMoments, node_width> of_leaves;
+    refit_bottom_up(
+        octree.nodes.data(), begin, end,
+        [&](std::uint32_t n, int child) {
+          const std::uint32_t* const first = octree.nodes[n].first_triangle + child;
+          of_leaves[static_cast<std::size_t>(child)] = moments_of(octree, first[0], first[1]);
+        },
+        [&](std::uint32_t n) {
+          const OctreeNode& node = octree.nodes[n];
+          moments_[n] = {};
+          for (int child = 0; child < node.child_count; ++child) {
+            const SurfaceMoments& moments = node.is_inner(child) ? moments_[node.child_node(child)]
+                                                                 : of_leaves[static_cast<std::size_t>(child)];
+            moments_[n] += moments;
+            set_child(boxes_[n], child,
+                      fitted_box(moments, child_box(octree.boxes[n], child),
+                                 [&](AxisExtents& extents) { extend_by_child(octree, n, child, extents); }));
+          }
+        });
+  }
+
+  void refit_object(const RefittedOctree& octree, const Aabb& box) override {
+    set_child(boxes_.back(), 0, fitted_box(moments_[0], box, [&](AxisExtents& extents) {
+                for (int child = 0; child < octree.nodes[0].child_count; ++child)
+                  extend_by_child(octree, 0, child, extents);
+              }));
+  }
+
+  void clear_apart(std::span<const NodePair> pairs, const NodeVolumes& b, const RelativePlacement& placement,
+                   std::uint64_t* masks) const override {
+    clear_boxes_apart(pairs, boxes_.data(), static_cast<const OrientedBoxes&>(b).boxes_.data(), placement,
+                      masks);
+  }
+
+  std::vector<Slab> slabs(std::uint32_t node, int child, const Aabb&, Vec3d translation) const override {
+    const ChildOrientedBoxes& boxes = boxes_[node];
+    const auto vector_of = [&](const float(&numbers)[3][node_width]) {
+      return Vec3f{numbers[0][child], numbers[1][child], numbers[2][child]};
+    };
+    const Vec3d center = in_double(vector_of(boxes.center));
+    std::vector<Slab> result;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3f axis = vector_of(boxes.axes[k]);
+      const double along = dot(in_double(axis), center), half = boxes.half_lengths[k][child];
+      result.push_back(moved_slab(axis, along - half, along + half, translation));
+    }
+    return result;
+  }
+
+  std::size_t bytes() const override {
+    return boxes_.capacity() * sizeof(ChildOrientedBoxes) + moments_.capacity() * sizeof(SurfaceMoments);
+  }
+
+ private:
+  std::vector<ChildOrientedBoxes> boxes_;
+  std::vector<SurfaceMoments> moments_;  // of the nodes
+};
 
 }  // namespace
 
-/// The parallel axis theorem.
-SurfaceMoments& SurfaceMoments::operator+=(const SurfaceMoments& other) {
-  if (!(other.area > 0)) return *this;
-  if (!(area > 0)) return *this = other;
-  const Vec3d between = other.center - center;
-  const double sum = area + other.area, share = other.area / sum;
-  for (std::size_t i = 0; i < second.size(); ++i) second[i] += other.second[i];
-  for_each_product(between, between,
-                   [&](std::size_t place, double product) { second[place] += area * share * product; });
-  center += share * between;
-  area = sum;
-  return *this;
-}
-
-void OrientedBoxes::refit(const RefittedOctree& octree, std::uint32_t begin, std::uint32_t end) {
-  std::array<SurfaceMoments, node_width> of_leaves;
-  refit_bottom_up(
-      octree.nodes.data(), begin, end,
-      [&](std::uint32_t n, int child) {
-        const std::uint32_t* const first = octree.nodes[n].first_triangle + child;
-        of_leaves[static_cast<std::size_t>(child)] = moments_of(octree, first[0], first[1]);
-      },
-      [&](std::uint32_t n) {
-        const OctreeNode& node = octree.nodes[n];
-        moments_[n] = {};
-        for (int child = 0; child < node.child_count; ++child) {
-          const SurfaceMoments& moments = node.is_inner(child) ? moments_[node.child_node(child)]
-                                                               : of_leaves[static_cast<std::size_t>(child)];
-          moments_[n] += moments;
-          const OrientedBoxFit fit(moments, child_box(octree.boxes[n], child));
-          AxisExtents extents;
-          if (fit.needs_extents()) extend_by_child(fit.frame(), octree, n, child, extents);
-          set_child(boxes_[n], child, fit.box(extents));
-        }
-      });
-}
-
-void OrientedBoxes::refit_object(const RefittedOctree& octree, const Aabb& box) {
-  const OrientedBoxFit fit(moments_[0], box);
-  AxisExtents extents;
-  for (int child = 0; fit.needs_extents() && child < octree.nodes[0].child_count; ++child)
-    extend_by_child(fit.frame(), octree, 0, child, extents);
-  set_child(boxes_.back(), 0, fit.box(extents));
-}
-
-std::vector<Slab> OrientedBoxes::slabs(std::uint32_t node, int child, const Aabb&, Vec3d translation) const {
-  const ChildOrientedBoxes& boxes = boxes_[node];
-  const auto vector_of = [&](const float(&numbers)[3][node_width]) {
-    return Vec3f{numbers[0][child], numbers[1][child], numbers[2][child]};
-  };
-  const Vec3d center = in_double(vector_of(boxes.center));
-  std::vector<Slab> result;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3f axis = vector_of(boxes.axes[k]);
-    const double along = dot(in_double(axis), center), half = boxes.half_lengths[k][child];
-    result.push_back(moved_slab(axis, along - half, along + half, translation));
-  }
-  return result;
+std::unique_ptr<NodeVolumes> make_oriented_boxes(std::size_t nodes) {
+  return std::make_unique<OrientedBoxes>(nodes);
 }
 
 }  // namespace supple

@@ -1,4 +1,4 @@
-#include "comparison/volumes/spheres.hpp"
+#include "comparison/volumes/volumes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,13 +7,20 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
+#include "comparison/volumes/volume_kernels.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
 namespace {
+
+/// The spheres of the children of a node. Those of missing children, and of children without a finite
+/// triangle, are empty.
+using ChildSpheres = std::array<BoundingSphere, node_width>;
 
 /// Pivots after which the search ends. It usually takes fewer than ten.
 constexpr int most_pivots = 32;
@@ -56,17 +63,10 @@ class FarthestVertex {
 
   void search_child(std::uint32_t n, int child) {
     const OctreeNode& node = octree_.nodes[n];
-    if (node.is_inner(child) && octree_.are_nodes_current) {
+    if (node.is_inner(child) && octree_.are_nodes_current)
       search_node(node.child_node(child));
-    } else if (!node.is_inner(child) && octree_.inert.empty()) {
-      const std::uint32_t* const first = octree_.leaves.first + std::size_t{n} * node_width + child;
-      for (std::uint32_t i = first[0]; i < first[1]; ++i) consider(octree_.leaves.vertices[i]);
-    } else {
-      for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
-        if (!octree_.inert.empty() && octree_.inert[t] != 0) continue;
-        for (const std::uint32_t vertex : octree_.triangles[t]) consider(vertex);
-      }
-    }
+    else
+      for_each_vertex(octree_, n, child, [&](std::uint32_t vertex) { consider(vertex); });
   }
 
   void search_node(std::uint32_t n) {
@@ -132,6 +132,7 @@ struct Support {
   std::size_t count = 0;
 
   void push(const Vec3d& point) { points[count++] = point; }
+  std::span<const Vec3d> all() const { return std::span(points).first(count); }
 };
 
 /// The smallest ball with all points on its surface. The center is not finite when the points are not
@@ -157,17 +158,17 @@ std::optional<Ball> extended_ball(Support& support, const Vec3d& point) {
   std::optional<Ball> smallest;
   Support chosen;
   for (std::uint32_t subset = 0; subset < 1u << support.count; ++subset) {
+    if (bit_count(subset) > 3) continue;
     Support on_ball;
     on_ball.push(point);
-    if (bit_count(subset) > 3) continue;
     for (std::size_t i = 0; i < support.count; ++i) {
       if ((subset >> i & 1) != 0) on_ball.push(support.points[i]);
     }
     const Ball ball = ball_through(on_ball);
     if (smallest && !(ball.squared_radius < smallest->squared_radius)) continue;
-    const bool encloses = std::all_of(
-        support.points.begin(), support.points.begin() + support.count,
-        [&](const Vec3d& p) { return squared_norm(p - ball.center) <= ball.squared_radius * squared_slack; });
+    const bool encloses = std::ranges::all_of(support.all(), [&](const Vec3d& p) {
+      return squared_norm(p - ball.center) <= ball.squared_radius * squared_slack;
+    });
     if (!encloses || !is_finite(ball.center)) continue;
     smallest = ball;
     chosen = on_ball;
@@ -211,38 +212,59 @@ BoundingSphere fitted_sphere(SphereFit fit, FarthestVertex farthest, const Aabb&
   return fit == SphereFit::minimal ? minimal_sphere(farthest, middle, search) : farthest.sphere();
 }
 
-}  // namespace
+class Spheres final : public NodeVolumes {
+ public:
+  Spheres(SphereFit fit, std::size_t nodes)
+      : NodeVolumes(BoundingVolume::sphere, nodes), fit_(fit), spheres_(nodes) {}
 
-/// Not `refit_bottom_up`: a sphere is fitted to the vertices below, because the union of spheres is larger.
-void Spheres::refit(const RefittedOctree& octree, std::uint32_t begin, std::uint32_t end) {
-  for (std::uint32_t n = begin; n < end; ++n) {
-    for (int child = 0; child < node_width; ++child) {
-      spheres_[n][static_cast<std::size_t>(child)] =
-          fitted_sphere(fit_, FarthestVertex(octree, spheres_), child_box(octree.boxes[n], child),
-                        [&](FarthestVertex& farthest) { farthest.search_child(n, child); });
-    }
-  }
-}
-
-void Spheres::refit_object(const RefittedOctree& octree, const Aabb& box) {
-  object_sphere_ = fitted_sphere(fit_, FarthestVertex(octree, spheres_), box,
-                                 [](FarthestVertex& farthest) { farthest.search_node(0); });
-}
-
-void Spheres::clear_apart(std::span<const NodePair> pairs, const NodeVolumes& b,
-                          const RelativePlacement& placement, std::uint64_t* masks) const {
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    for (std::uint32_t rest_a = pairs[k].children_a; rest_a != 0; rest_a &= rest_a - 1) {
-      const int i = std::countr_zero(rest_a);
-      const BoundingSphere one = sphere(pairs[k].a, i);
-      for (std::uint32_t rest_b = pairs[k].children_b; rest_b != 0; rest_b &= rest_b - 1) {
-        const int j = std::countr_zero(rest_b);
-        const BoundingSphere other = static_cast<const Spheres&>(b).sphere(pairs[k].b, j);
-        const bool are_apart = !overlap(one, other, placement.offset, placement.slop);
-        masks[k] &= ~(std::uint64_t{are_apart} << (node_width * i + j));
+  /// Not `refit_bottom_up`: a sphere is fitted to the vertices below, because the union of spheres is larger.
+  void refit(const RefittedOctree& octree, std::uint32_t begin, std::uint32_t end) override {
+    for (std::uint32_t n = begin; n < end; ++n) {
+      for (int child = 0; child < node_width; ++child) {
+        spheres_[n][static_cast<std::size_t>(child)] =
+            fitted_sphere(fit_, FarthestVertex(octree, spheres_), child_box(octree.boxes[n], child),
+                          [&](FarthestVertex& farthest) { farthest.search_child(n, child); });
       }
     }
   }
+
+  void refit_object(const RefittedOctree& octree, const Aabb& box) override {
+    object_sphere_ = fitted_sphere(fit_, FarthestVertex(octree, spheres_), box,
+                                   [](FarthestVertex& farthest) { farthest.search_node(0); });
+  }
+
+  void clear_apart(std::span<const NodePair> pairs, const NodeVolumes& b, const RelativePlacement& placement,
+                   std::uint64_t* masks) const override {
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      for (std::uint32_t rest_a = pairs[k].children_a; rest_a != 0; rest_a &= rest_a - 1) {
+        const int i = std::countr_zero(rest_a);
+        const BoundingSphere one = sphere(pairs[k].a, i);
+        for (std::uint32_t rest_b = pairs[k].children_b; rest_b != 0; rest_b &= rest_b - 1) {
+          const int j = std::countr_zero(rest_b);
+          const BoundingSphere other = static_cast<const Spheres&>(b).sphere(pairs[k].b, j);
+          const bool are_apart = !overlap(one, other, placement.offset, placement.slop);
+          masks[k] &= ~(std::uint64_t{are_apart} << (node_width * i + j));
+        }
+      }
+    }
+  }
+
+  BoundingSphere sphere(std::uint32_t node, int child) const override {
+    return node == object() ? object_sphere_ : spheres_[node][static_cast<std::size_t>(child)];
+  }
+
+  std::size_t bytes() const override { return spheres_.capacity() * sizeof(ChildSpheres); }
+
+ private:
+  SphereFit fit_;
+  std::vector<ChildSpheres> spheres_;
+  BoundingSphere object_sphere_;
+};
+
+}  // namespace
+
+std::unique_ptr<NodeVolumes> make_spheres(SphereFit fit, std::size_t nodes) {
+  return std::make_unique<Spheres>(fit, nodes);
 }
 
 }  // namespace supple

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "core/float_rounding.hpp"
@@ -24,34 +24,20 @@ constexpr std::array<Vec3f, 10> slab_directions{
 /// the lower ends of the eight children, then the upper ends.
 constexpr std::size_t floats_per_slab = 2 * std::size_t{node_width};
 
-/// Computes the slabs of all leaves of the nodes [begin, end), and writes those of each of these nodes into
-/// its parent. The slabs of inner children must be there already. Rounded outward; infinite when coordinates
-/// are so large that sums may overflow. Equal on all instruction sets.
-void refit_slabs(const RefittedOctree& octree, std::span<const Vec3f> directions, float* slabs,
-                 std::uint32_t begin, std::uint32_t end);
-
-/// Three axes at right angles, of unit length except for rounding, and the point where distances along them
-/// begin.
-struct AxisFrame {
-  std::array<Vec3f, 3> axes{};
-  Vec3d origin{};
-};
-
-/// The lowest and the highest distance along each axis; inverted without points.
-struct AxisExtents {
-  std::array<float, 3> low{inverted, inverted, inverted}, high{-inverted, -inverted, -inverted};
-
- private:
-  static constexpr float inverted = std::numeric_limits<float>::infinity();
-};
-
-/// Extends the extents by the vertices with these ids. The distance of a vertex has an error of at most 2^-21
-/// of the distance between the vertex and the origin. Equal on all instruction sets.
-void extend_extents(const AxisFrame& frame, const VertexBuffer& positions,
-                    std::span<const std::uint32_t> vertices, AxisExtents& extents);
-
-/// Writes the union of the slabs of the first `count` children in `children` as child `child` of `parent`.
-void unite_slabs(const float* children, int count, std::size_t directions, float* parent, int child);
+/// Calls `visit(vertex)` for the corners of the triangles of a child that are not inert; for the vertices of
+/// a leaf once.
+template <class Visit>
+void for_each_vertex(const RefittedOctree& octree, std::uint32_t n, int child, const Visit& visit) {
+  const OctreeNode& node = octree.nodes[n];
+  if (octree.inert.empty() && !node.is_inner(child)) {
+    const std::uint32_t* const first = octree.leaves.first + std::size_t{n} * node_width + child;
+    std::for_each(octree.leaves.vertices + first[0], octree.leaves.vertices + first[1], visit);
+    return;
+  }
+  for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
+    if (octree.inert.empty() || octree.inert[t] == 0) std::ranges::for_each(octree.triangles[t], visit);
+  }
+}
 
 /// The oriented boxes of the children of a node, one array per number.
 struct alignas(64) ChildOrientedBoxes {

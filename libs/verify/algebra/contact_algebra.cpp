@@ -22,6 +22,7 @@
 #include "geometry/numbers/number_vector.hpp"
 #include "geometry/vector.hpp"
 #include "supple/continuous.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 #include "verify/algebra/sturm.hpp"
 
 namespace supple {
@@ -40,8 +41,10 @@ struct Part {
   std::optional<Polynomial> positive;
 };
 
-class Elements {
- public:
+struct Elements {
+  std::vector<Part> parts{};
+  Polynomial volume{};
+
   Elements(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end, bool edges,
            double separation) {
     int lowest = lowest_bit(separation);
@@ -57,12 +60,20 @@ class Elements {
       }
     }
     const Integer d = to_integer(separation, lowest);
-    squared_separation_ = Polynomial{d * d} + Polynomial{};
+    const Polynomial squared_separation = Polynomial{d * d} + Polynomial{};
     const Path x = minus(vertices[0], vertices[edges ? 2 : 1]);
     const Path u = minus(edges ? vertices[0] : vertices[2], vertices[1]);
     const Path w = minus(vertices[3], vertices[edges ? 2 : 1]);
-    const Path u_to_w = minus(w, u);
     const Path to_u = minus(x, u), to_w = minus(x, w);
+    // These take the vector from a corner.
+    const auto add_corner = [&](const Path& from) {
+      parts.push_back({{squared_separation - dot(from, from)}, {}});
+    };
+    const auto add_side = [&](const Path& from, const Path& side) {
+      const Polynomial along = dot(from, side), whole = dot(side, side);
+      const Path moment = cross(from, side);
+      parts.push_back({{squared_separation * whole - dot(moment, moment), along, whole - along}, whole});
+    };
     for (const Path* corner : {&x, &to_u, &to_w}) add_corner(*corner);
     add_side(x, u);
     add_side(x, w);
@@ -71,36 +82,17 @@ class Elements {
       add_side(to_u, w);
       add_side(to_w, u);
     } else {
-      add_side(to_u, u_to_w);
+      add_side(to_u, minus(w, u));
     }
-    add_interior(x, u, w, edges);
-  }
-
-  const std::vector<Part>& parts() const { return parts_; }
-  const Polynomial& volume() const { return volume_; }
-
- private:
-  /// `x` is the vector from the corner.
-  void add_corner(const Path& x) { parts_.push_back({{squared_separation_ - dot(x, x)}, {}}); }
-  void add_side(const Path& x, const Path& side) {
-    const Polynomial along = dot(x, side), whole = dot(side, side);
-    const Path moment = cross(x, side);
-    parts_.push_back({{squared_separation_ * whole - dot(moment, moment), along, whole - along}, whole});
-  }
-  void add_interior(const Path& x, const Path& u, const Path& w, bool parallelogram) {
     const Path normal = cross(u, w);
-    volume_ = dot(x, normal);
+    volume = dot(x, normal);
     const Polynomial whole = dot(normal, normal);
-    const Polynomial alpha = dot(cross(x, w), normal), beta = dot(cross(u, x), normal);
-    Part part{{squared_separation_ * whole - volume_ * volume_, alpha, beta}, whole};
-    const Polynomial rest = whole - alpha;
-    if (parallelogram) part.not_negative.push_back(rest);
-    part.not_negative.push_back((parallelogram ? whole : rest) - beta);
-    parts_.push_back(std::move(part));
+    const Polynomial alpha = dot(cross(x, w), normal), beta = dot(cross(u, x), normal), rest = whole - alpha;
+    Part inside{{squared_separation * whole - volume * volume, alpha, beta}, whole};
+    if (edges) inside.not_negative.push_back(rest);
+    inside.not_negative.push_back((edges ? whole : rest) - beta);
+    parts.push_back(std::move(inside));
   }
-
-  std::vector<Part> parts_;
-  Polynomial squared_separation_, volume_;
 };
 
 template <class SignOf>
@@ -114,7 +106,7 @@ std::optional<TimeBracket> first_contact(const Elements& elements, bool separate
   const auto touches_at_start = [&](const Part& part) {
     return touches(part, [&](const Polynomial& p) { return sign_at(p, start); });
   };
-  if (std::ranges::any_of(elements.parts(), touches_at_start)) return TimeBracket{0, 0};
+  if (std::ranges::any_of(elements.parts, touches_at_start)) return TimeBracket{0, 0};
 
   std::optional<TimeBracket> first;
   const auto consider = [&](const Polynomial& p, const std::vector<Part>& parts) {
@@ -131,11 +123,11 @@ std::optional<TimeBracket> first_contact(const Elements& elements, bool separate
       return;
     }
   };
-  if (!separated && !elements.volume().empty()) {
-    consider(elements.volume(), elements.parts());
+  if (!separated && !elements.volume.empty()) {
+    consider(elements.volume, elements.parts);
     return first;
   }
-  for (const Part& part : elements.parts()) {
+  for (const Part& part : elements.parts) {
     const Polynomial& near = part.not_negative.front();
     for (const Polynomial& p : part.not_negative) {
       if (near.empty() || &p == &near) consider(p, {part});
@@ -169,10 +161,24 @@ bool apart_along(Vec3d direction, const std::array<Vec3d, 4>& start, const std::
   return std::max(above, below) > separation * (1 + 0x1p-48) + size * 0x1p-48 + 0x1p-1000;
 }
 
+std::optional<TimeBracket> first_contact(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
+                                         std::size_t first_size, double separation) {
+  if (!std::isfinite(separation) || separation < 0) {
+    fail("min_separation is " + std::to_string(separation) + "; give a finite number that is not negative");
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!is_finite(start[i]) || !is_finite(end[i])) return std::nullopt;
+  }
+  if (clearly_apart(start, end, first_size, separation)) return std::nullopt;
+  return first_contact(Elements(start, end, first_size == 2, separation), separation > 0);
+}
+
+}  // namespace
+
 /// Tries the directions that separate most elements: normals to both elements, to one element and one edge,
-/// and lines between vertices, all in the middle of the step.
-bool stay_apart(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end, std::size_t first_size,
-                double separation) {
+/// and lines between vertices and from edges to vertices, all in the middle of the step.
+bool clearly_apart(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end, std::size_t first_size,
+                   double separation) {
   const auto path = [&](std::size_t from, std::size_t to) {
     return (start[to] - start[from]) + (end[to] - end[from]);
   };
@@ -182,27 +188,19 @@ bool stay_apart(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& e
   const Vec3d u = path(first_size == 1 ? 2 : 0, 1), w = path(2, 3), normal = cross(u, w);
   if (apart(normal) || apart(cross(normal, u)) || apart(cross(normal, w))) return true;
   if (first_size == 1 && apart(cross(normal, path(1, 3)))) return true;
-  for (std::size_t i = 0; i < first_size; ++i) {
-    for (std::size_t j = first_size; j < 4; ++j) {
-      if (apart(path(j, i))) return true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t begin = i < first_size ? first_size : 0, count = i < first_size ? 4 : first_size;
+    for (std::size_t j = begin; j < count; ++j) {
+      const Vec3d between = path(j, i);
+      if (i < first_size && apart(between)) return true;
+      for (std::size_t k = j + 1; k < count; ++k) {
+        const Vec3d edge = path(j, k);
+        if (apart(between - dot(between, edge) / dot(edge, edge) * edge)) return true;
+      }
     }
   }
   return false;
 }
-
-std::optional<TimeBracket> first_contact(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
-                                         std::size_t first_size, double separation) {
-  if (!std::isfinite(separation) || separation < 0) {
-    fail("min_separation is " + std::to_string(separation) + "; give a finite number that is not negative");
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!is_finite(start[i]) || !is_finite(end[i])) return std::nullopt;
-  }
-  if (stay_apart(start, end, first_size, separation)) return std::nullopt;
-  return first_contact(Elements(start, end, first_size == 2, separation), separation > 0);
-}
-
-}  // namespace
 
 std::optional<TimeBracket> first_contact_by_algebra(const VertexFaceMotion& motion, double min_separation) {
   return first_contact(motion.start, motion.end, 1, min_separation);

@@ -24,9 +24,8 @@ struct FeaturePart {
 std::vector<FeaturePart> parts_of(std::size_t vertices) {
   std::vector<FeaturePart> parts;
   for (std::uint8_t v = 0; v < vertices; ++v) parts.push_back({{FeatureKind::vertex, v}, {v}, v});
-  if (vertices == 2) parts.push_back({{FeatureKind::edge, 0}, {0, 1}, 0});
+  if (vertices > 1) parts.push_back({{FeatureKind::edge, 0}, {0, 1}, 0});
   if (vertices == 3) {
-    parts.push_back({{FeatureKind::edge, 0}, {0, 1}, 0});
     parts.push_back({{FeatureKind::edge, 2}, {0, 2}, 1});
     parts.push_back({{FeatureKind::edge, 1}, {1, 2}, 2});
     parts.push_back({{FeatureKind::face, 0}, {0, 1, 2}, 0});

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <boost/multiprecision/cpp_int.hpp>
+#include <cstddef>
 #include <span>
 
 #include "geometry/numbers/number_vector.hpp"
@@ -32,6 +33,12 @@ struct ExactDistance {
 /// vertices with finite coordinates, at least one of them one vertex, or both two. Takes tens of microseconds
 /// to milliseconds.
 ExactDistance distance_by_algebra(std::span<const Vec3d> a, std::span<const Vec3d> b);
+
+/// Whether two elements of together four vertices, of which the first `first_size` are those of the first,
+/// are farther apart than the separation along some direction, at both ends of the step and so throughout.
+/// Found in double precision with error bounds, for most elements that are apart.
+bool clearly_apart(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end, std::size_t first_size,
+                   double separation);
 
 /// Whether the inside of an edge crosses the inside of a face with corners not on one line, by the solution
 /// of the equations in rationals.

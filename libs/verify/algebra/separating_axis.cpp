@@ -31,43 +31,33 @@ using sturm::Integer;
 using Vector = NumberVector<Integer>;
 using Corners = std::array<Vector, 3>;
 
-class AxisSearch {
- public:
-  AxisSearch(const Corners& a, const Corners& b)
-      : a_(a), b_(b), edges_{minus(a[1], a[0]), minus(a[2], a[1]), minus(a[0], a[2]),
-                             minus(b[1], b[0]), minus(b[2], b[1]), minus(b[0], b[2])} {}
-
-  bool disjoint() const {
-    Vector plane_normal;  // stays 0 when all edges are parallel
-    for (std::size_t i = 0; i < 6; ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const Vector normal = cross(edges_[i], edges_[j]);
-        if (separates(normal)) return true;
-        if (normal != Vector{}) plane_normal = normal;
-      }
-    }
-    const auto leaves_plane = [&](const Vector& edge) { return dot(plane_normal, edge) != 0; };
-    const auto side_separates = [&](const Vector& edge) { return separates(cross(plane_normal, edge)); };
-    if (std::ranges::any_of(edges_, leaves_plane)) return false;
-    if (plane_normal != Vector{}) return std::ranges::any_of(edges_, side_separates);
-    const Vector between = minus(a_[0], b_[0]);
-    const auto line_separates = [&](const Vector& edge) {
-      return separates(edge) || separates(cross(edge, cross(between, edge)));
-    };
-    return separates(between) || std::ranges::any_of(edges_, line_separates);
-  }
-
- private:
-  bool separates(const Vector& axis) const {
+bool are_disjoint(const Corners& a, const Corners& b) {
+  const auto separates = [&](const Vector& axis) {
     if (axis == Vector{}) return false;
-    const auto [a_low, a_high] = std::minmax({dot(axis, a_[0]), dot(axis, a_[1]), dot(axis, a_[2])});
-    const auto [b_low, b_high] = std::minmax({dot(axis, b_[0]), dot(axis, b_[1]), dot(axis, b_[2])});
+    const auto [a_low, a_high] = std::minmax({dot(axis, a[0]), dot(axis, a[1]), dot(axis, a[2])});
+    const auto [b_low, b_high] = std::minmax({dot(axis, b[0]), dot(axis, b[1]), dot(axis, b[2])});
     return a_high < b_low || b_high < a_low;
+  };
+  const std::array edges{minus(a[1], a[0]), minus(a[2], a[1]), minus(a[0], a[2]),
+                         minus(b[1], b[0]), minus(b[2], b[1]), minus(b[0], b[2])};
+  Vector plane_normal;  // stays 0 when all edges are parallel
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vector normal = cross(edges[i], edges[j]);
+      if (separates(normal)) return true;
+      if (normal != Vector{}) plane_normal = normal;
+    }
   }
-
-  const Corners &a_, &b_;
-  std::array<Vector, 6> edges_;
-};
+  const auto leaves_plane = [&](const Vector& edge) { return dot(plane_normal, edge) != 0; };
+  const auto side_separates = [&](const Vector& edge) { return separates(cross(plane_normal, edge)); };
+  if (std::ranges::any_of(edges, leaves_plane)) return false;
+  if (plane_normal != Vector{}) return std::ranges::any_of(edges, side_separates);
+  const Vector between = minus(a[0], b[0]);
+  const auto line_separates = [&](const Vector& edge) {
+    return separates(edge) || separates(cross(edge, cross(between, edge)));
+  };
+  return separates(between) || std::ranges::any_of(edges, line_separates);
+}
 
 /// The exponent of the lowest bit of all coordinates of one axis. Scaling an axis by a power of two is a
 /// linear map and leaves disjoint sets disjoint.
@@ -91,7 +81,7 @@ bool triangles_intersect_by_axes(const TrianglePoints& a, const TrianglePoints& 
       corners_b[i][axis] = sturm::to_integer(b[i][axis], lowest);
     }
   }
-  return !AxisSearch(corners_a, corners_b).disjoint();
+  return !are_disjoint(corners_a, corners_b);
 }
 
 }  // namespace supple

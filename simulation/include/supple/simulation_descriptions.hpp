@@ -16,8 +16,7 @@ inline constexpr std::array words<Integrator>{"verlet", "symplectic_euler", "bac
 template <>
 struct Description<MassSpringOptions> {
   static constexpr const char* name = "MassSpringOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = MassSpringOptions;
     const auto number = [&](const char* field, double Options::*member, const char* unit, ValueRange range,
                             const char* doc) {
@@ -83,8 +82,7 @@ struct Description<MassSpringOptions> {
 template <>
 struct Description<MassSpringMotion::Handle> {
   static constexpr const char* name = "MassSpringMotion::Handle";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Handle = MassSpringMotion::Handle;
     visitor(Field<Handle, std::vector<std::uint32_t>>{
         .name = "vertices", .member = &Handle::vertices, .doc = "Vertices that are moved"});
@@ -101,8 +99,7 @@ struct Description<MassSpringMotion::Handle> {
 template <>
 struct Description<MassSpringMotion> {
   static constexpr const char* name = "MassSpringMotion";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Motion = MassSpringMotion;
     visitor(Field<Motion, MassSpringOptions>{
         .name = "springs", .member = &Motion::springs, .doc = "Masses and springs of the object"});
@@ -148,8 +145,7 @@ struct Description<MassSpringMotion> {
 template <>
 struct Description<RigidMotion> {
   static constexpr const char* name = "RigidMotion";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Motion = RigidMotion;
     visitor(Field<Motion, Vec3d>{
         .name = "velocity", .member = &Motion::velocity, .doc = "Velocity at the start", .unit = "m/s"});
@@ -180,8 +176,7 @@ struct Description<RigidMotion> {
 template <>
 struct Description<WaveMotion> {
   static constexpr const char* name = "WaveMotion";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Motion = WaveMotion;
     visitor(Field<Motion, Vec3d>{
         .name = "velocity", .member = &Motion::velocity, .doc = "Velocity of the drift", .unit = "units/s"});
@@ -207,8 +202,7 @@ struct Description<WaveMotion> {
 template <>
 struct Description<ContactResponse> {
   static constexpr const char* name = "ContactResponse";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = ContactResponse;
     visitor(Field<Options, double>{.name = "thickness",
                                    .member = &Options::thickness,
@@ -235,8 +229,7 @@ struct Description<ContactResponse> {
 template <>
 struct Description<SimulationOptions> {
   static constexpr const char* name = "SimulationOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = SimulationOptions;
     visitor(Field<Options, SceneOptions>{
         .name = "scene", .member = &Options::scene, .doc = "Options of the detection"});

@@ -1,6 +1,6 @@
 // Spheres around nodes: enclosing, smallest, and safe for degenerate positions.
 
-#include "comparison/volumes/spheres.hpp"
+#include "comparison/volumes/volumes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -124,18 +124,16 @@ struct Toy {
 namespace supple {
 
 template <>
-struct Description<records_test::Toy> {
+struct Description<records_test::Toy> : RecordDescription<records_test::Toy> {
   static constexpr const char* name = "Toy";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
-    using Row = records_test::Toy;
-    visit_field(visitor, "owner", &Row::owner, "Owner", role::object('a'));
-    visit_field(visitor, "edge", &Row::edge, "Edge", role::key(Names::element, 'a'));
-    visit_field(visitor, "kind", &Row::kind, "Kind");
-    visit_field(visitor, "is_open", &Row::is_open, "Whether it is open");
-    visit_field(visitor, "number", &Row::number, "Number", {}, "pieces");
-    visit_field(visitor, "place", &Row::place, "Place", role::rounded, "length");
-    visit_field(visitor, "feature", &Row::feature, "Feature");
+  static constexpr void fields(auto&& field) {
+    field("owner", &Row::owner, "Owner", role::object('a'));
+    field("edge", &Row::edge, "Edge", role::key(Names::element, 'a'));
+    field("kind", &Row::kind, "Kind");
+    field("is_open", &Row::is_open, "Whether it is open");
+    field("number", &Row::number, "Number", {}, "pieces");
+    field("place", &Row::place, "Place", role::rounded, "length");
+    field("feature", &Row::feature, "Feature");
   }
 };
 

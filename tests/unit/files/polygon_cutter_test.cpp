@@ -1,4 +1,4 @@
-#include "files/polygon/polygon_cutter.hpp"
+#include "files/polygon/polygon.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ struct Cut {
 Cut cut(const std::vector<Vec3d>& corners) {
   Cut result;
   result.triangles.resize(corners.size() - 2);
-  result.shape = PolygonCutter().cut(corners, result.triangles);
+  result.shape = cut_polygon(corners, result.triangles);
   return result;
 }
 

@@ -25,8 +25,8 @@ namespace supple::distance_test {
 
 /// Triangles with a vertex that is not finite are no part of a surface; their vertices are elements only of
 /// other triangles.
-PlainMovingObject plain_object(const Scene& scene, ObjectId id, const TriangleMesh& mesh) {
-  PlainMovingObject plain{{}, {}, mesh.triangles};
+PlainObject plain_object(const Scene& scene, ObjectId id, const TriangleMesh& mesh) {
+  PlainObject plain{{}, {}, mesh.triangles};
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) plain.end.push_back(scene.position(id, v));
   plain.start = plain.end;
   const auto is_finite_vertex = [&](std::uint32_t v) {
@@ -40,7 +40,7 @@ PlainMovingObject plain_object(const Scene& scene, ObjectId id, const TriangleMe
   return plain;
 }
 
-bool any_triangles_intersect(const PlainMovingObject& a, const PlainMovingObject& b) {
+bool any_triangles_intersect(const PlainObject& a, const PlainObject& b) {
   for (const Triangle& s : a.triangles) {
     for (const Triangle& t : b.triangles) {
       if (triangles_intersect_by_axes({a.end[s[0]], a.end[s[1]], a.end[s[2]]},
@@ -52,8 +52,7 @@ bool any_triangles_intersect(const PlainMovingObject& a, const PlainMovingObject
 }
 
 /// Compares a result with all elements within a little more than its distance.
-void expect_nearest(const PlainMovingObject& a, const PlainMovingObject& b,
-                    const std::optional<ProximityPair>& found) {
+void expect_nearest(const PlainObject& a, const PlainObject& b, const std::optional<ProximityPair>& found) {
   const Parallel serial(1);
   if (any_triangles_intersect(a, b)) {
     ASSERT_TRUE(found);
@@ -61,9 +60,7 @@ void expect_nearest(const PlainMovingObject& a, const PlainMovingObject& b,
     return;
   }
   if (!found) {
-    const auto has_element = [](const PlainMovingObject& object) {
-      return !boxed_elements(object).faces.empty();
-    };
+    const auto has_element = [](const PlainObject& object) { return !boxed_elements(object).faces.empty(); };
     EXPECT_FALSE(has_element(a) && has_element(b));
     return;
   }
@@ -138,8 +135,8 @@ TEST_P(Distances, EqualExactBruteForce) {
     }
     for (std::size_t i = 0; i < ids.size(); ++i) {
       for (std::size_t k = i + 1; k < ids.size(); ++k) {
-        const PlainMovingObject a = plain_object(scene, ids[i], meshes[i]),
-                                b = plain_object(scene, ids[k], meshes[k]);
+        const PlainObject a = plain_object(scene, ids[i], meshes[i]),
+                          b = plain_object(scene, ids[k], meshes[k]);
         const auto found = scene.distance(ids[i], ids[k]);
         expect_nearest(a, b, found);
         EXPECT_EQ(scene.distance(ids[k], ids[i]), found);  // now from the last result

@@ -44,7 +44,7 @@ std::vector<Vec3d> at(const Path& path, double t) {
 /// Calls `visit` with the points of each vertex-face and edge-edge pair at the start and at time t.
 template <class Visit>
 void for_each_pair(const std::vector<Path>& paths, double t, const Visit& visit) {
-  std::vector<PlainMovingObject> objects;
+  std::vector<PlainObject> objects;
   std::vector<BoxedElements> elements;
   for (const Path& path : paths) {
     objects.push_back({path.mesh.positions, at(path, t), path.mesh.triangles});

@@ -18,7 +18,7 @@ namespace supple::brute_force_impacts_test {
 using Fault = ContinuousDifference::Fault;
 
 struct Step {
-  PlainMovingObject a, b;
+  PlainObject a, b;
   std::vector<ContinuousContact> reported;
   std::vector<TouchingElements> truth;
 
@@ -33,7 +33,7 @@ struct Step {
     options.contacts = ContactKinds::continuous;
     options.impact.min_separation = separation;
     Scene scene(options);
-    for (const PlainMovingObject* object : {&a, &b}) {
+    for (const PlainObject* object : {&a, &b}) {
       TriangleMesh mesh;
       mesh.positions = object->start;
       mesh.triangles = object->triangles;
@@ -46,7 +46,8 @@ struct Step {
   }
 
   std::vector<TouchingElements> truth_at(double separation) const {
-    return find_impacts_by_brute_force(a, b, false, {.impact = {.min_separation = separation}}, Parallel(1))
+    return find_impacts_by_brute_force(a, b, false, {.min_separation = separation}, ElementKinds::all,
+                                       Parallel(1))
         .touching;
   }
   std::vector<Fault> faults_of(const std::vector<ContinuousContact>& contacts) const {

@@ -19,12 +19,12 @@ class WrongPenetrations : public testing::Test {
 
   WrongPenetrations() {
     const TriangleMesh ball = make_icosphere(3);
-    inner_ = {ball.positions, ball.triangles};
+    inner_ = {ball.positions, ball.positions, ball.triangles};
     outer_ = inner_;
-    for (Vec3d& p : inner_.positions) p = 0.5 * p + Vec3d{0.05, 0.03, 0.01};
+    for (Vec3d& p : inner_.end) p = 0.5 * p + Vec3d{0.05, 0.03, 0.01};
     Scene scene({.contacts = ContactKinds::penetration});
     const ObjectId a = scene.add(ball), b = scene.add(ball, {.solid = true});
-    scene.set_positions(a, inner_.positions);
+    scene.set_positions(a, inner_.end);
     const DetectResult& result = scene.detect();
     inside_.assign(result.penetrations.begin(), result.penetrations.end());
     parts_.assign(result.contained_parts.begin(), result.contained_parts.end());
@@ -50,7 +50,7 @@ class WrongPenetrations : public testing::Test {
 };
 
 TEST_F(WrongPenetrations, NoneIsReportedForTheRightOnes) {
-  EXPECT_EQ(inside_.size(), inner_.positions.size());
+  EXPECT_EQ(inside_.size(), inner_.end.size());
   EXPECT_TRUE(differences().empty());
 }
 

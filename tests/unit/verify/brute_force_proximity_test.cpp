@@ -1,15 +1,15 @@
 // The filter of the brute force in double precision, compared with rationals.
 
-#include "verify/brute_force_proximity.hpp"
+#include "verify/algebra/distance_algebra.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "support/random.hpp"
-#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple::brute_force_proximity_test {
 
@@ -32,10 +32,12 @@ TEST(ClearlyApart, IsNeverTrueWithinReach) {
     const std::array<Vec3d, 2> edge{point(), point()}, other{point(), point()};
     const Vec3d vertex = random.below(2) == 0 ? point() : scale * random.vector(2);
     const auto expect_safe = [&](std::span<const Vec3d> a, std::span<const Vec3d> b) {
+      std::array<Vec3d, 4> points;
+      std::ranges::copy(b, std::ranges::copy(a, points.begin()).out);
       const Rational squared = distance_by_algebra(a, b).squared;
       const double distance = std::sqrt(squared.convert_to<double>());
       for (const double reach : {0.0, distance / 2, distance, 2 * distance}) {
-        const bool are_apart = clearly_apart(a, b, reach),
+        const bool are_apart = clearly_apart(points, points, a.size(), reach),
                    are_within = squared <= Rational(reach) * Rational(reach);
         EXPECT_FALSE(are_apart && are_within) << round << ": reach " << reach << ", distance " << distance;
         apart += are_apart ? 1 : 0;

@@ -12,7 +12,7 @@
 namespace supple::verify_curves_test {
 
 PlainObject plain(const TriangleMesh& mesh) {
-  return {mesh.positions, mesh.triangles};
+  return {mesh.positions, mesh.positions, mesh.triangles};
 }
 
 std::vector<ExactPenetration> vertices_inside(const PlainObject& inner, const PlainObject& outer) {

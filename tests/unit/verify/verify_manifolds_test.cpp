@@ -43,9 +43,9 @@ TEST(VerifyManifolds, FindsEachFault) {
     a.triangles = box.triangles;
     b.triangles = make_icosphere(4).triangles;
     for (std::uint32_t v = 0; v < box.positions.size(); ++v)
-      a.positions.push_back(scene.position(result.manifolds[0].a, v));
+      a.end.push_back(scene.position(result.manifolds[0].a, v));
     for (std::uint32_t v = 0; v < make_icosphere(4).positions.size(); ++v)
-      b.positions.push_back(scene.position(upper, v));
+      b.end.push_back(scene.position(upper, v));
     const Manifold right = result.manifolds[0];
     const std::vector<ManifoldPoint> right_points(result.manifold_points.begin(),
                                                   result.manifold_points.end());

@@ -27,28 +27,21 @@ struct PinValues {
 namespace supple {
 
 template <>
-struct Description<viewer::PinValues> {
+struct Description<viewer::PinValues> : RecordDescription<viewer::PinValues> {
   static constexpr const char* name = "PinValues";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
-    using Values = viewer::PinValues;
-    visit_field(visitor, "contacts", &Values::contacts,
-                "Intersections, continuous contacts, near pairs and vertices inside");
-    visit_field(visitor, "gap", &Values::gap, "Smallest distance of near pairs", {}, "length");
-    visit_field(visitor, "depth", &Values::depth, "Largest depth of vertices inside solids, and of curves",
-                {}, "length");
-    visit_field(visitor, "length", &Values::length, "Length of the segments in which triangles intersect", {},
-                "length");
-    visit_field(visitor, "area", &Values::area, "Area of the closed curves of intersection", {}, "area");
-    visit_field(visitor, "normal_x", &Values::normal_x,
-                "Mean normal of the contacts, from the second object to the first: x");
-    visit_field(visitor, "normal_y", &Values::normal_y, "The same normal: y");
-    visit_field(visitor, "normal_z", &Values::normal_z, "The same normal: z");
-    visit_field(visitor, "impact_time", &Values::impact_time,
-                "Earliest continuous contact, as a part of the step");
-    visit_field(visitor, "speed", &Values::speed, "Speed of the mean of the vertices", {}, "length/s");
-    visit_field(visitor, "displacement", &Values::displacement,
-                "Largest distance of a vertex from its place at the start", {}, "length");
+  static constexpr void fields(auto&& field) {
+    field("contacts", &Row::contacts, "Intersections, continuous contacts, near pairs and vertices inside");
+    field("gap", &Row::gap, "Smallest distance of near pairs", {}, "length");
+    field("depth", &Row::depth, "Largest depth of vertices inside solids, and of curves", {}, "length");
+    field("length", &Row::length, "Length of the segments in which triangles intersect", {}, "length");
+    field("area", &Row::area, "Area of the closed curves of intersection", {}, "area");
+    field("normal_x", &Row::normal_x, "Mean normal of the contacts, from the second object to the first: x");
+    field("normal_y", &Row::normal_y, "The same normal: y");
+    field("normal_z", &Row::normal_z, "The same normal: z");
+    field("impact_time", &Row::impact_time, "Earliest continuous contact, as a part of the step");
+    field("speed", &Row::speed, "Speed of the mean of the vertices", {}, "length/s");
+    field("displacement", &Row::displacement, "Largest distance of a vertex from its place at the start", {},
+          "length");
   }
 };
 

@@ -26,8 +26,7 @@ inline constexpr const char* spectators_doc =
 template <>
 struct Description<viewer::BreakOptions> {
   static constexpr const char* name = "BreakOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = viewer::BreakOptions;
     visitor(Field<Options, bool>{
         .name = "contact_begin", .member = &Options::contact_begin, .doc = "Two objects begin to touch"});
@@ -50,8 +49,7 @@ struct Description<viewer::BreakOptions> {
 template <>
 struct Description<viewer::AttachOptions> {
   static constexpr const char* name = "AttachOptions";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
+  static constexpr void visit(auto&& visitor) {
     using Options = viewer::AttachOptions;
     visitor(
         Field<Options, std::string>{.name = "title", .member = &Options::title, .doc = "Title of the page"});

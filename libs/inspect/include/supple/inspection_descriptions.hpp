@@ -13,29 +13,23 @@ inline constexpr std::array words<PairStage>{"not_tested",     "shared_vertex", 
                                              "exact_test",     "contact"};
 
 template <>
-struct Description<OctreeStatistics> {
+struct Description<OctreeStatistics> : RecordDescription<OctreeStatistics> {
   static constexpr const char* name = "OctreeStatistics";
-  template <class Visitor>
-  static constexpr void visit(Visitor&& visitor) {
-    using Stats = OctreeStatistics;
-    const auto value = [&]<class Value>(const char* field, Value Stats::*member, const char* unit,
-                                        const char* doc) {
-      visitor(Field<Stats, Value>{.name = field, .member = member, .doc = doc, .unit = unit});
-    };
-    value("triangles", &Stats::triangles, "triangles", "Triangles in the octree");
-    value("vertices", &Stats::vertices, "vertices", "Vertices of these triangles");
-    value("nodes", &Stats::nodes, "nodes", "Nodes of eight children");
-    value("leaves", &Stats::leaves, "leaves", "Leaves");
-    value("depth", &Stats::depth, "levels", "Level of the deepest leaf; the root is level 0");
-    value("largest_leaf", &Stats::largest_leaf, "triangles", "Triangles of the largest leaf");
-    value("mean_leaf_size", &Stats::mean_leaf_size, "triangles", "Mean triangles of a leaf");
-    value("mean_node_width", &Stats::mean_node_width, "children", "Mean children of a node");
-    value("bytes", &Stats::bytes, "bytes", "Memory of the octree without the positions");
-    value("bytes_per_triangle", &Stats::bytes_per_triangle, "bytes", "The same per triangle");
-    value("leaves_by_level", &Stats::leaves_by_level, "leaves", "Leaves of each level from the root on");
-    value("cost", &Stats::cost, "visits", "Mean visits of a query by the surface-area heuristic");
-    value("degradation", &Stats::degradation, "", "The cost divided by the cost when the octree was built");
-    value("rebuilds", &Stats::rebuilds, "rebuilds", "Rebuilds of the octree since the object was added");
+  static constexpr void fields(auto&& field) {
+    field("triangles", &Row::triangles, "Triangles in the octree", {}, "triangles");
+    field("vertices", &Row::vertices, "Vertices of these triangles", {}, "vertices");
+    field("nodes", &Row::nodes, "Nodes of eight children", {}, "nodes");
+    field("leaves", &Row::leaves, "Leaves", {}, "leaves");
+    field("depth", &Row::depth, "Level of the deepest leaf; the root is level 0", {}, "levels");
+    field("largest_leaf", &Row::largest_leaf, "Triangles of the largest leaf", {}, "triangles");
+    field("mean_leaf_size", &Row::mean_leaf_size, "Mean triangles of a leaf", {}, "triangles");
+    field("mean_node_width", &Row::mean_node_width, "Mean children of a node", {}, "children");
+    field("bytes", &Row::bytes, "Memory of the octree without the positions", {}, "bytes");
+    field("bytes_per_triangle", &Row::bytes_per_triangle, "The same per triangle", {}, "bytes");
+    field("leaves_by_level", &Row::leaves_by_level, "Leaves of each level from the root on", {}, "leaves");
+    field("cost", &Row::cost, "Mean visits of a query by the surface-area heuristic", {}, "visits");
+    field("degradation", &Row::degradation, "The cost divided by the cost when the octree was built");
+    field("rebuilds", &Row::rebuilds, "Rebuilds of the octree since the object was added", {}, "rebuilds");
   }
 };
 

@@ -109,11 +109,11 @@ struct WrongAnswer {
 };
 
 /// Recomputes the last `detect`, all kinds of contacts that it found, by exact arithmetic over all pairs of
-/// triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`;
-/// exact boxes, sorted along an axis or in a tree, exclude pairs that are apart. Quadratic at worst: about
-/// a second for two meshes of 70,000 triangles, also with penetration. Throws `Error` when an object or
-/// option changed since the last `detect`, and when that call was stopped, truncated, or found no kind of
-/// contacts. A stop ends it after the pair of objects that it compares.
+/// triangles or elements, and lists every difference. It shares no octrees and no filters with `detect`; a
+/// tree of exact boxes excludes pairs that are apart. Quadratic at worst: about a second for two meshes of
+/// 70,000 triangles, also with penetration. Throws `Error` when an object or option changed since the last
+/// `detect`, and when that call was stopped, truncated, or found no kind of contacts. A stop ends it after
+/// the pair of objects that it compares.
 VerifyReport verify(const Scene& scene, const CallLimits& limits = {});
 
 // Checks of answers. Each takes the arguments of a query and its answer at the present positions. It
