@@ -117,11 +117,11 @@ TEST(CurveDepth, OfFlushBoxes) {
 
 /// Each flush face has a curve of its own, and no vertex is inside.
 TEST(CurveDepth, OfABoxAsThickAsTheSlabAroundIt) {
-  for (const double offset : {0.0, 0x1p-20, 0.01, 0.1}) {
+  for (const double offset : {-0.1, -0x1p-20, 0.0, 0x1p-20, 0.01}) {
     Scene scene({.contacts = ContactKinds::penetration, .curves = true});
     scene.add(make_box({1, 0.125, 1}, 1), {.solid = true});
     TriangleMesh box = make_box({0.5, 0.125, 0.5}, 1);
-    for (Vec3d& p : box.positions) p.x += 0.25 + offset;  // flush on one more side, then beyond it
+    for (Vec3d& p : box.positions) p.x += 0.25 + offset;  // within the slab, flush on a third side, or beyond it
     scene.add(box, {.solid = true});
     const DetectResult& result = scene.detect();
     ASSERT_GT(result.curves.size(), 0u);
