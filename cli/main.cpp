@@ -64,7 +64,7 @@ int main(int argument_count, char** arguments) {
     if (const LaunchedProcess process = launched_process(); process.size > 1 && first != "view")
       run_as_rank(process, arguments);
     // The documents describe the options of all commands, also those of experiments.
-    if (first == "--generate") run_experiments(arguments);
+    if (first == "--describe") run_experiments(arguments);
     return run(parse_command_line(argument_count, arguments));
   });
 }

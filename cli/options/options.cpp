@@ -18,11 +18,11 @@
 #include "base/exit_status.hpp"
 #include "base/text.hpp"
 #include "inputs/recorded_input.hpp"
-#include "options/documents.hpp"
 #include "options/help_footers.hpp"
 #include "options/option_groups.hpp"
 #include "options/option_kinds.hpp"
 #include "options/option_needs.hpp"
+#include "options/program_description.hpp"
 #include "options/view_commands.hpp"
 #include "scene_file/scene_file.hpp"
 #include "session/settings.hpp"
@@ -332,10 +332,8 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments,
   program.footer(program_footer);
   program.set_version_flag("--version", "supple " SUPPLE_VERSION, "Print the version and exit");
   program.require_subcommand(0, 1);
-  std::string document;
-  program
-      .add_option("--generate", document, "Print a document made from these options: man, markdown or tables")
-      ->group("");
+  bool describes = false;
+  program.add_flag("--describe", describes, "Print what documents are made from, as JSON")->group("");
 
   Dependences dependences;
   const CLI::App* detect = add_detect(program, result.detect, dependences);
@@ -351,8 +349,8 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments,
   if (add_options) add_options(*experiment, dependences);
   try {
     program.parse(argument_count, arguments);
-    if (!document.empty()) {
-      print_document(program, document);
+    if (describes) {
+      describe_program(program);
       return result;
     }
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);

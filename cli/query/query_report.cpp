@@ -7,7 +7,6 @@
 #include "base/text.hpp"
 #include "supple/difference_descriptions.hpp"
 #include "supple/result_descriptions.hpp"
-#include "supple/version.hpp"
 
 namespace supple::cli {
 namespace {
@@ -77,39 +76,13 @@ void print_comparison(const Totals& all) {
   }
 }
 
-void write_time(JsonWriter& json, const std::optional<double>& time) {
-  if (time)
-    json.value(*time);
-  else
-    json.null();
-}
-
-void write_indices(JsonWriter& json, const char* name, const std::vector<std::uint64_t>& indices) {
-  json.key(name);
-  json.begin_array();
-  for (const std::uint64_t index : indices) json.value(index);
-  json.end_array();
-}
-
 void write_differences(JsonWriter& json, const std::vector<QueryDifference>& differences) {
-  json.key("differences");
-  json.begin_array();
-  for (const QueryDifference& d : differences) {
-    json.begin_object();
+  json.objects("differences", differences, [&](const QueryDifference& d) {
     json.member("query", d.query);
     json.member("fault", word_of(d.fault));
-    json.key("reported");
-    write_time(json, d.reported);
-    json.key("algebra");
-    json.begin_array();
-    if (d.truth) {
-      json.value(d.truth->low);
-      json.value(d.truth->high);
-    }
-    json.end_array();
-    json.end_object();
-  }
-  json.end_array();
+    json.member("reported", d.reported);
+    json.list("algebra", d.truth ? std::vector{d.truth->low, d.truth->high} : std::vector<double>());
+  });
 }
 
 }  // namespace
@@ -143,8 +116,6 @@ void print_queries(const std::vector<QueryFileResult>& files, bool verified, boo
 QueryJsonReport::QueryJsonReport(const std::string& file_name, double min_separation, bool with_stats,
                                  bool verified)
     : json_(file_name), with_stats_(with_stats), verified_(verified) {
-  json_.begin_object();
-  json_.member("supple", std::string(SUPPLE_VERSION));
   json_.member("min_separation", min_separation);
   json_.key("files");
   json_.begin_array();
@@ -158,12 +129,10 @@ void QueryJsonReport::add(const QueryFileResult& file) {
   json_.member("touching", file.touching);
   json_.member("within_tolerance", file.within_tolerance);
   json_.member("compared", file.compared);
-  write_indices(json_, "false_negatives", file.false_negatives);
-  write_indices(json_, "false_positives", file.false_positives);
-  json_.key("times");
-  json_.begin_array();
-  for (const std::optional<double>& time : file.times) write_time(json_, time);
-  json_.end_array();
+  json_.list("false_negatives", file.false_negatives);
+  json_.list("false_positives", file.false_positives);
+  json_.list("times", file.times,
+             [&](const std::optional<double>& time) { time ? json_.value(*time) : json_.null(); });
   if (verified_) write_differences(json_, file.differences);
   if (with_stats_) json_.member("seconds_per_query", file.seconds_per_query);
   json_.end_object();
@@ -173,18 +142,16 @@ void QueryJsonReport::add(const QueryFileResult& file) {
 void QueryJsonReport::finish(const std::vector<QueryFileResult>& files) {
   const Totals all(files);
   json_.end_array();
-  json_.key("total");
-  json_.begin_object();
-  json_.member("queries", all.queries);
-  json_.member("touching", all.touching);
-  json_.member("within_tolerance", all.within_tolerance);
-  json_.member("compared", all.compared);
-  json_.member("false_negatives", all.false_negatives);
-  json_.member("false_positives", all.false_positives);
-  if (verified_) json_.member("differences", all.differences);
-  if (with_stats_) json_.member("seconds_per_query", all.seconds_per_query());
-  json_.end_object();
-  json_.end_object();
+  json_.object("total", [&] {
+    json_.member("queries", all.queries);
+    json_.member("touching", all.touching);
+    json_.member("within_tolerance", all.within_tolerance);
+    json_.member("compared", all.compared);
+    json_.member("false_negatives", all.false_negatives);
+    json_.member("false_positives", all.false_positives);
+    if (verified_) json_.member("differences", all.differences);
+    if (with_stats_) json_.member("seconds_per_query", all.seconds_per_query());
+  });
   json_.close();
 }
 
