@@ -2,18 +2,8 @@
 #include <vector>
 
 #include "base/run_program.hpp"
-#include "commands/detect.hpp"
-#include "commands/diff.hpp"
-#include "commands/info.hpp"
-#include "commands/simulate.hpp"
-#include "moving/launcher.hpp"
-#include "moving/ranks.hpp"
-#include "options/options.hpp"
-#include "query/ccd_queries.hpp"
-#include "query/query.hpp"
-#include "render/render.hpp"
+#include "commands/commands.hpp"
 #include "supple/error.hpp"
-#include "view/view.hpp"
 
 namespace supple::cli {
 namespace {

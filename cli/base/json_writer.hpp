@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/output_file.hpp"
+#include "base/files.hpp"
 #include "session/messages/json_output.hpp"
 
 namespace supple::cli {

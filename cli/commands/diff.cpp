@@ -1,4 +1,4 @@
-#include "commands/diff.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/json_writer.hpp"
-#include "base/output_names.hpp"
 #include "base/text.hpp"
 #include "supple/recording.hpp"
 

@@ -1,4 +1,4 @@
-#include "commands/info.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/json_writer.hpp"
-#include "base/output_names.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
-#include "inputs/parts.hpp"
 #include "session/messages/described_json.hpp"
 #include "supple/comparison.hpp"
 #include "supple/inspection.hpp"

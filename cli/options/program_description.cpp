@@ -1,4 +1,4 @@
-#include "options/program_description.hpp"
+#include "options/option_groups.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "base/json_writer.hpp"
-#include "reports/csv_report.hpp"
+#include "reports/report.hpp"
 #include "session/fields/field_forms.hpp"
 #include "session/messages/described_json.hpp"
 #include "session/messages/sections.hpp"

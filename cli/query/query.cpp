@@ -1,4 +1,4 @@
-#include "query/query.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -15,15 +15,14 @@
 #include <vector>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "base/json_writer.hpp"
-#include "base/missing_threads.hpp"
-#include "base/output_names.hpp"
 #include "base/progress.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
-#include "inputs/parts.hpp"
-#include "query/point_file.hpp"
+#include "query/query_file.hpp"
 #include "reports/result_json.hpp"
 #include "supple/error.hpp"
 #include "supple/result_descriptions.hpp"

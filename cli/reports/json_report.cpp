@@ -1,4 +1,4 @@
-#include "reports/json_report.hpp"
+#include "reports/report.hpp"
 
 #include <fmt/core.h>
 
@@ -11,7 +11,6 @@
 
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
-#include "reports/node_pair_report.hpp"
 #include "reports/result_json.hpp"
 #include "session/messages/described_json.hpp"
 #include "supple/difference_descriptions.hpp"

@@ -1,4 +1,4 @@
-#include "reports/node_pair_report.hpp"
+#include "reports/report.hpp"
 
 #include <fmt/core.h>
 

@@ -5,8 +5,6 @@
 #include <string>
 
 #include "options/options.hpp"
-#include "reports/csv_report.hpp"
-#include "reports/json_report.hpp"
 #include "reports/report.hpp"
 #include "reports/tested_kinds.hpp"
 #include "reports/text_report.hpp"

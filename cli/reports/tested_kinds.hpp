@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "reports/report.hpp"
+#include "supple/result.hpp"
 
 namespace supple::cli {
 
+struct Frame;
 struct Input;
 
 /// Which kinds of contacts a run has tested: a kind counts as tested when one frame had something to test.
