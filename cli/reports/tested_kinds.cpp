@@ -1,4 +1,4 @@
-#include "reports/tested_kinds.hpp"
+#include "reports/reports.hpp"
 
 #include <fmt/core.h>
 
@@ -7,7 +7,6 @@
 
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
-#include "reports/report.hpp"
 #include "supple/topology.hpp"
 
 namespace supple::cli {

@@ -1,4 +1,4 @@
-#include "reports/text_report.hpp"
+#include "reports/reports.hpp"
 
 #include <fmt/core.h>
 
@@ -13,9 +13,7 @@
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
-#include "reports/report.hpp"
 #include "reports/result_json.hpp"
-#include "reports/tested_kinds.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/topology.hpp"
 #include "supple/verify.hpp"
