@@ -50,7 +50,7 @@ class JsonWriter : public viewer::JsonOutput<rapidjson::FileWriteStream, Doubles
   }
   template <class Items>
   void list(const char* name, Items&& items) {
-    list(name, items, [this](const auto& item) { value(item); });
+    list(name, items, [this](const auto& item) { this->value(item); });
   }
   /// `write(item)` writes the members of an object for each item.
   template <class Items, class Write>
