@@ -2,18 +2,8 @@
 #include <vector>
 
 #include "base/run_program.hpp"
-#include "commands/detect.hpp"
-#include "commands/diff.hpp"
-#include "commands/info.hpp"
-#include "commands/simulate.hpp"
-#include "moving/launcher.hpp"
-#include "moving/ranks.hpp"
-#include "options/options.hpp"
-#include "query/ccd_queries.hpp"
-#include "query/query.hpp"
-#include "render/render.hpp"
+#include "commands/commands.hpp"
 #include "supple/error.hpp"
-#include "view/view.hpp"
 
 namespace supple::cli {
 namespace {
@@ -64,7 +54,7 @@ int main(int argument_count, char** arguments) {
     if (const LaunchedProcess process = launched_process(); process.size > 1 && first != "view")
       run_as_rank(process, arguments);
     // The documents describe the options of all commands, also those of experiments.
-    if (first == "--generate") run_experiments(arguments);
+    if (first == "--describe") run_experiments(arguments);
     return run(parse_command_line(argument_count, arguments));
   });
 }

@@ -37,8 +37,10 @@ endif()
 if(TARGET supple_cli)
   install(TARGETS supple_cli supple_experiment RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/supple)
-  if(NOT CMAKE_CROSSCOMPILING)  # the program of experiments writes the manual page: it has all options
-    install(CODE "execute_process(COMMAND \"$<TARGET_FILE:supple_experiment>\" --generate man
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  if(NOT CMAKE_CROSSCOMPILING)  # the program of experiments has all options
+    install(CODE "execute_process(COMMAND \"$<TARGET_FILE:supple_experiment>\" --describe
+      COMMAND \"${Python3_EXECUTABLE}\" \"${PROJECT_SOURCE_DIR}/tools/make_documents.py\" --man
       OUTPUT_FILE \"${PROJECT_BINARY_DIR}/supple.1\" COMMAND_ERROR_IS_FATAL ANY)")
     install(FILES ${PROJECT_BINARY_DIR}/supple.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   endif()

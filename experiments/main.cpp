@@ -9,8 +9,8 @@
 int main(int argument_count, char** argument_values) {
   using namespace supple;
   std::vector<const char*> arguments(argument_values, argument_values + argument_count);
-  // `supple-experiment NAME` is `supple experiment NAME`; `--generate` belongs to the whole program.
-  if (argument_count < 2 || arguments[1] != std::string_view("--generate"))
+  // `supple-experiment NAME` is `supple experiment NAME`; `--describe` belongs to the whole program.
+  if (argument_count < 2 || arguments[1] != std::string_view("--describe"))
     arguments.insert(arguments.begin() + 1, "experiment");
   return cli::run_program([&] {
     experiments::ExperimentOptions options;

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/exit_status.hpp"
-#include "base/output_file.hpp"
+#include "base/files.hpp"
 #include "machine.hpp"
 #include "supple/error.hpp"
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "base/missing_threads.hpp"
+#include "base/run_program.hpp"
 
 namespace supple::experiments {
 

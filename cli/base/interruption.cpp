@@ -1,17 +1,14 @@
 #include "base/interruption.hpp"
 
 #include <fmt/core.h>
-#include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <cmath>
+#include <condition_variable>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <system_error>
@@ -24,20 +21,10 @@ namespace {
 
 // Atomics without locks are safe in signal handlers.
 std::atomic<int> received = 0;
-std::atomic<int> event = -1;  // wakes the thread that watches
 static_assert(std::atomic<int>::is_always_lock_free);
 
-void wake() {
-  const std::uint64_t one = 1;
-  if (event >= 0) [[maybe_unused]]
-    const ssize_t written = write(event, &one, sizeof one);
-}
-
 extern "C" void remember(int signal) {
-  const int error = errno;
   received = signal;
-  wake();
-  errno = error;
 }
 
 using Clock = std::chrono::steady_clock;
@@ -58,20 +45,6 @@ void set_alarm(double seconds) {
 }
 
 constexpr double most_seconds = 1e9;
-
-/// Waits for an event, or until the time. Returns whether there was an event.
-bool wait_for_event(std::optional<std::chrono::steady_clock::time_point> until) {
-  using namespace std::chrono;
-  int milliseconds = -1;
-  if (until) {
-    const auto left = duration_cast<duration<double, std::milli>>(*until - steady_clock::now()).count();
-    milliseconds = static_cast<int>(std::clamp(left + 1, 0.0, 1e9));
-  }
-  pollfd waiting{event, POLLIN, 0};
-  if (poll(&waiting, 1, milliseconds) <= 0) return false;
-  std::uint64_t count = 0;
-  return read(event, &count, sizeof count) == sizeof count;
-}
 
 }  // namespace
 
@@ -102,8 +75,6 @@ Interruption::Interruption(std::optional<double> seconds,
     const std::chrono::duration<double> limit(std::min(*seconds, most_seconds));
     deadline_ = time_limit_start.value_or(Clock::now()) + std::chrono::duration_cast<Clock::duration>(limit);
   }
-  event = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (event < 0) return;
   try {
     watcher_ = std::jthread(
         [this, overdue = std::move(when_overdue)](const std::stop_token& ended) { watch(ended, overdue); });
@@ -114,13 +85,6 @@ Interruption::Interruption(std::optional<double> seconds,
 Interruption::~Interruption() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
-  if (watcher_.joinable()) {
-    watcher_.request_stop();
-    wake();
-    watcher_.join();
-  }
-  const int closed = event.exchange(-1);
-  if (closed >= 0) close(closed);
 }
 
 void Interruption::end() {
@@ -142,14 +106,16 @@ bool Interruption::is_late() const {
 
 void Interruption::watch(const std::stop_token& ended,
                          const std::function<void(const Interruption&)>& when_overdue) {
-  constexpr auto grace = std::chrono::milliseconds(500);
-  while (!is_requested() && !ended.stop_requested()) wait_for_event(deadline_);
-  if (ended.stop_requested()) return;
-  source_.request_stop();
-  for (const auto end = Clock::now() + grace; Clock::now() < end;) {
+  // A signal handler cannot wake a thread by the means of C++, so the thread looks for signals.
+  constexpr auto interval = std::chrono::milliseconds(20), grace = std::chrono::milliseconds(500);
+  std::mutex mutex;
+  std::unique_lock sleep(mutex);
+  std::condition_variable_any end;
+  while (!end.wait_for(sleep, ended, interval, [this] { return is_requested(); })) {
     if (ended.stop_requested()) return;
-    wait_for_event(end);
   }
+  source_.request_stop();
+  end.wait_for(sleep, ended, grace, [] { return false; });
   const auto lock = hold();
   if (!ended.stop_requested()) when_overdue(*this);
 }

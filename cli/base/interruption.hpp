@@ -48,7 +48,7 @@ class Interruption {
   std::optional<Clock::time_point> deadline_;
   std::stop_source source_;
   std::mutex writing_;
-  std::jthread watcher_;
+  std::jthread watcher_;  ///< the last member: it uses the others until it ends
 };
 
 /// Reports in one line that a run has ended early, and returns the exit status: that of a signal, or

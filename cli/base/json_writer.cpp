@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "supple/version.hpp"
+
 namespace supple::cli {
 
 void DoublesOrWords::write(rapidjson::Writer<rapidjson::FileWriteStream>& writer, double number) {
@@ -19,6 +21,8 @@ void DoublesOrWords::write(rapidjson::Writer<rapidjson::FileWriteStream>& writer
 JsonWriter::JsonWriter(const std::string& file_name)
     : file_(file_name), buffer_(1 << 16), stream_(file_.stream(), buffer_.data(), buffer_.size()) {
   begin(stream_);
+  begin_object();
+  member("supple", SUPPLE_VERSION);
 }
 
 void JsonWriter::flush() {
@@ -27,6 +31,7 @@ void JsonWriter::flush() {
 }
 
 void JsonWriter::close() {
+  end_object();
   stream_.Put('\n');
   stream_.Flush();
   file_.close();

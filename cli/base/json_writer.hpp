@@ -2,10 +2,11 @@
 
 #include <rapidjson/filewritestream.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/output_file.hpp"
+#include "base/files.hpp"
 #include "session/messages/json_output.hpp"
 
 namespace supple::cli {
@@ -15,13 +16,55 @@ struct DoublesOrWords {
   static void write(rapidjson::Writer<rapidjson::FileWriteStream>& writer, double number);
 };
 
-/// Streams JSON to a file without holding it in memory.
+/// Streams a JSON object to a file without holding it in memory. Its first member is the version.
 class JsonWriter : public viewer::JsonOutput<rapidjson::FileWriteStream, DoublesOrWords> {
  public:
   explicit JsonWriter(const std::string& file_name);
 
+  using JsonOutput::member;
+  /// Null when there is no value.
+  template <class Value>
+  void member(const char* name, const std::optional<Value>& v) {
+    key(name);
+    v ? value(*v) : null();
+  }
+  /// `write()` writes the members of the object.
+  template <class Write>
+  void object(const char* name, const Write& write) {
+    key(name);
+    begin_object();
+    write();
+    end_object();
+  }
+  /// `write(item)` writes each item of the array.
+  template <class Items, class Write>
+  void array(Items&& items, const Write& write) {
+    begin_array();
+    for (const auto& item : items) write(item);
+    end_array();
+  }
+  template <class Items, class Write>
+  void list(const char* name, Items&& items, const Write& write) {
+    key(name);
+    array(items, write);
+  }
+  template <class Items>
+  void list(const char* name, Items&& items) {
+    list(name, items, [this](const auto& item) { this->value(item); });
+  }
+  /// `write(item)` writes the members of an object for each item.
+  template <class Items, class Write>
+  void objects(const char* name, Items&& items, const Write& write) {
+    list(name, items, [&](const auto& item) {
+      begin_object();
+      write(item);
+      end_object();
+    });
+  }
+
   /// Writes the buffer to the file. Throws `Error` when that fails.
   void flush();
+  /// Ends the object.
   void close();
 
  private:

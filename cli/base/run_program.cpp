@@ -15,9 +15,11 @@
 #include <system_error>
 
 #include "base/exit_status.hpp"
-#include "base/output_file.hpp"
+#include "base/files.hpp"
 #include "base/text.hpp"
 #include "supple/comparison.hpp"
+#include "supple/error.hpp"
+#include "supple/threads.hpp"
 #include "supple/use_manifolds.hpp"
 
 namespace supple::cli {
@@ -54,6 +56,15 @@ int report_lack_of_memory() {
   } catch (...) {
   }
   std::abort();
+}
+
+/// The number in a variable of the environment; -1 when there is none.
+int number_of(const char* variable) {
+  const char* const text = std::getenv(variable);
+  if (text == nullptr || *text == '\0') return -1;
+  char* end = nullptr;
+  const long number = std::strtol(text, &end, 10);
+  return *end == '\0' && number >= 0 && number <= 1 << 30 ? static_cast<int>(number) : -1;
 }
 
 }  // namespace
@@ -109,6 +120,43 @@ void become_program(std::string name, char** arguments) {
   arguments[0] = name.data();
   execv(beside.c_str(), arguments);
   execvp(name.c_str(), arguments);
+}
+
+LaunchedProcess launched_process() {
+  struct Variables {
+    const char *rank, *size;
+  };
+  // Open MPI; MPICH, Intel MPI and Slurm with PMI; Slurm with PMIx.
+  for (const auto& [rank, size] :
+       {Variables{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, Variables{"PMI_RANK", "PMI_SIZE"},
+        Variables{"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}}) {
+    const LaunchedProcess process{number_of(rank), number_of(size)};
+    if (process.rank >= 0 && process.size > 1) return process;
+  }
+  return {};
+}
+
+void run_as_rank(const LaunchedProcess& process, char** arguments) {
+  become_program("supple-mpi", arguments);
+  // Rank 0 reports it. The launcher ends the job at the first status that is not 0.
+  if (process.rank != 0) std::_Exit(exit_done);
+  throw Error(fmt::format(
+      "was started as {} processes, but the program supple-mpi is neither beside this program nor in PATH; "
+      "build it with MPI and Zoltan, or start one process, without the launcher",
+      process.size));
+}
+
+void warn_of_missing_threads(std::uint32_t threads) {
+  warn_of_missing_threads(threads != 0 ? threads : usable_cores(), available_threads(threads));
+}
+
+void warn_of_missing_threads(std::uint32_t wanted, std::uint32_t available) {
+  if (available >= wanted) return;
+  fmt::print(
+      stderr,
+      "supple: warning: the system has too few processes or too little memory left for {} threads, so {} "
+      "work; raise its limits (ulimit -u, ulimit -v), or give --threads {}\n",
+      wanted, available, available);
 }
 
 }  // namespace supple::cli

@@ -1,14 +1,10 @@
 #include "commands/build_simulation.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <utility>
-#include <vector>
 
-#include "inputs/frame_files.hpp"
-#include "inputs/parts.hpp"
+#include "inputs/inputs.hpp"
 #include "supple/comparison.hpp"
 
 namespace supple::cli {
@@ -17,9 +13,10 @@ namespace {
 /// Adds an object and returns its id; one overload per kind of motion.
 struct Adder {
   Simulation& simulation;
-  TriangleMesh mesh;
+  const InputObject& object;
   const ObjectOptions& options;
   bool only_positions = false;  ///< without the elements
+  TriangleMesh mesh = object.mesh;
 
   ObjectId add(const auto&... motion) {
     if (only_positions) mesh = {mesh.name, std::move(mesh.positions), {}, {}, {}};
@@ -38,33 +35,14 @@ struct Adder {
   ObjectId operator()(const MassSpringMotion& motion) { return add(motion); }
   ObjectId operator()(const RigidMotion& motion) { return add(motion); }
 
-  /// The step that ends at a time.
-  auto step_at() const {
-    return [time_step = simulation.options().time_step](double seconds) {
-      return static_cast<std::uint64_t>(std::llround(seconds / time_step));
-    };
-  }
-
-  ObjectId operator()(const FrameSequence& sequence) {
-    const auto frames = std::make_shared<const FrameFiles>(sequence, mesh);
-    frames->read(0, mesh.positions);
-    return add(MotionFunction([step = step_at(), frames](double seconds, std::span<Vec3d> positions) {
-      frames->read(step(seconds), positions);
-    }));
-  }
-
-  ObjectId operator()(const ComputedMotion& motion) {
-    motion.positions(0, mesh.positions);
-    return add(
-        MotionFunction([step = step_at(), read = motion.positions](
-                           double seconds, std::span<Vec3d> positions) { read(step(seconds), positions); }));
-  }
-
-  ObjectId operator()(const RecordedMotion& motion) {
-    return add(MotionFunction([step = step_at(), motion](double seconds, std::span<Vec3d> positions) {
-      const std::vector<Vec3d> recorded = motion.recording->positions(step(seconds), motion.object);
-      std::copy(recorded.begin(), recorded.end(), positions.begin());
-    }));
+  /// Frames: step k ends with frame k.
+  ObjectId operator()(const auto&) {
+    const auto read = frames_of(object)->positions;
+    read(0, mesh.positions);
+    return add(MotionFunction(
+        [read, time_step = simulation.options().time_step](double seconds, std::span<Vec3d> positions) {
+          read(static_cast<std::uint64_t>(std::llround(seconds / time_step)), positions);
+        }));
   }
 };
 
@@ -86,12 +64,12 @@ ObjectId add_positions(Simulation& simulation, const InputObject& object) {
   if (object.motion && std::holds_alternative<MassSpringMotion>(*object.motion))
     return add_object(simulation, object);
   const ObjectOptions options{.name = object.options.name};
-  Adder adder{simulation, object.mesh, options, true};
+  Adder adder{simulation, object, options, true};
   return object.motion ? std::visit(adder, *object.motion) : adder.add();
 }
 
 ObjectId add_object(Simulation& simulation, const InputObject& object) {
-  return object.motion ? std::visit(Adder{simulation, object.mesh, object.options}, *object.motion)
+  return object.motion ? std::visit(Adder{simulation, object, object.options}, *object.motion)
                        : simulation.add(object.mesh, object.options);
 }
 

@@ -1,4 +1,4 @@
-#include "commands/detect.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -10,15 +10,14 @@
 #include <vector>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/interruption.hpp"
-#include "base/missing_threads.hpp"
-#include "base/output_names.hpp"
 #include "base/progress.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
 #include "inputs/inputs.hpp"
-#include "inputs/recorded_input.hpp"
-#include "moving/run_of_rank.hpp"
+#include "moving/ranks.hpp"
 #include "options/option_needs.hpp"
 #include "reports/reports.hpp"
 #include "supple/error.hpp"
@@ -30,10 +29,7 @@ namespace {
 std::uint64_t longest_sequence(const Input& input) {
   std::uint64_t longest = 0;
   for (const InputObject& object : input.objects) {
-    if (const auto* sequence = object.motion ? std::get_if<FrameSequence>(&*object.motion) : nullptr)
-      longest = std::max<std::uint64_t>(longest, sequence->files.size());
-    if (const auto* motion = object.motion ? std::get_if<ComputedMotion>(&*object.motion) : nullptr)
-      longest = std::max(longest, motion->count);
+    if (const auto frames = frames_of(object)) longest = std::max(longest, frames->count);
   }
   return longest;
 }

@@ -1,4 +1,4 @@
-#include "commands/diff.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -8,11 +8,10 @@
 #include <string>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/json_writer.hpp"
-#include "base/output_names.hpp"
 #include "base/text.hpp"
 #include "supple/recording.hpp"
-#include "supple/version.hpp"
 
 namespace supple::cli {
 namespace {
@@ -20,27 +19,13 @@ namespace {
 void write_json(const DiffOptions& options, const Recording& a, const Recording& b,
                 const std::optional<RecordingDifference>& difference) {
   JsonWriter json(options.json);
-  json.begin_object();
-  json.member("supple", std::string(SUPPLE_VERSION));
-  json.key("recordings");
-  json.begin_array();
-  for (const std::string& name : options.recordings) json.value(name);
-  json.end_array();
+  json.list("recordings", options.recordings);
   json.key("frames");
   json.pair(a.frame_count(), b.frame_count());
   json.member("tolerance", options.tolerance);
   json.member("equal", !difference);
-  json.key("frame");
-  if (difference && difference->frame)
-    json.value(*difference->frame);
-  else
-    json.null();
-  json.key("what");
-  if (difference)
-    json.value(difference->what);
-  else
-    json.null();
-  json.end_object();
+  json.member("frame", difference ? difference->frame : std::nullopt);
+  json.member("what", difference ? std::optional(difference->what) : std::nullopt);
   json.close();
 }
 

@@ -1,4 +1,4 @@
-#include "commands/info.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -8,13 +8,13 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/json_writer.hpp"
-#include "base/output_names.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
-#include "inputs/parts.hpp"
 #include "session/messages/described_json.hpp"
 #include "supple/comparison.hpp"
 #include "supple/inspection.hpp"
@@ -23,7 +23,6 @@
 #include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
-#include "supple/version.hpp"
 
 namespace supple::cli {
 namespace {
@@ -129,27 +128,12 @@ void print_text(const MeshInfo& info) {
   fmt::print("  memory       {} bytes, {:.1f} per {}\n\n", grouped(o.bytes), o.bytes_per_triangle, item);
 }
 
-void write_octree(JsonWriter& json, const OctreeStatistics& octree) {
-  json.key("octree");
-  json.begin_object();
-  viewer::write_members(json, octree);
-  json.end_object();
-}
-
-void write_polygons(JsonWriter& json, const PolygonCounts& polygons) {
-  json.key("polygons");
-  json.begin_object();
-  viewer::write_members(json, polygons);
-  json.end_object();
-}
-
 void write_json(JsonWriter& json, const MeshInfo& info) {
   const MeshTopology& t = info.topology;
-  json.begin_object();
   json.member("name", info.name);
   json.member("vertices", t.vertices);
   json.member("triangles", t.triangles);
-  write_polygons(json, info.polygons);
+  json.object("polygons", [&] { viewer::write_members(json, info.polygons); });
   json.member("edges", t.edges);
   json.member("lines", info.lines);
   json.member("points", info.points);
@@ -164,16 +148,8 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
   json.member("unused_vertices", t.unused_vertices);
   json.member("degenerate_triangles", t.degenerate_triangles);
   json.member("non_finite_vertices", info.non_finite_vertices);
-  json.key("bounds");
-  if (info.bounds) {
-    json.begin_array();
-    for (const Vec3d& corner : *info.bounds) json.value(corner);
-    json.end_array();
-  } else {
-    json.null();
-  }
-  write_octree(json, info.octree);
-  json.end_object();
+  info.bounds ? json.list("bounds", *info.bounds) : json.member("bounds", std::optional<double>());
+  json.object("octree", [&] { viewer::write_members(json, info.octree); });
 }
 
 }  // namespace
@@ -189,21 +165,14 @@ int run_info(const InfoOptions& options) {
   print_notes(input);
   check_output_names({{"--json", options.json}}, input.files);
   std::optional<JsonWriter> json;
-  if (!options.json.empty()) {
-    json.emplace(options.json);
-    json->begin_object();
-    json->member("supple", std::string(SUPPLE_VERSION));
-    json->key("objects");
-    json->begin_array();
-  }
+  if (!options.json.empty()) json.emplace(options.json);
+  std::vector<MeshInfo> measured;
   for (const InputObject& object : input.objects) {
-    const MeshInfo info = measure(object, input.simulation.scene, options);
-    if (json) write_json(*json, info);
-    if (options.json != "-") print_text(info);
+    measured.push_back(measure(object, input.simulation.scene, options));
+    if (options.json != "-") print_text(measured.back());
   }
   if (json) {
-    json->end_array();
-    json->end_object();
+    json->objects("objects", measured, [&](const MeshInfo& info) { write_json(*json, info); });
     json->close();
   }
   return exit_done;

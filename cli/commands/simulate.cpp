@@ -1,4 +1,4 @@
-#include "commands/simulate.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -14,16 +14,15 @@
 #include <vector>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/interruption.hpp"
-#include "base/missing_threads.hpp"
-#include "base/output_names.hpp"
 #include "base/progress.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
-#include "commands/energy_table.hpp"
 #include "commands/frame_recorder.hpp"
 #include "inputs/inputs.hpp"
-#include "moving/run_of_rank.hpp"
+#include "moving/ranks.hpp"
 #include "reports/reports.hpp"
 #include "supple/error.hpp"
 
@@ -53,6 +52,33 @@ std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
   return static_cast<std::uint64_t>(is_whole ? whole : std::ceil(steps));
 }
 
+void print_energy(const std::string& name, double start, const MassSpringEnergy& end) {
+  fmt::print("{:<20} {:>13.6g} {:>13.6g} {:>11.4g} {:>11.4g} {:>11.4g} {:>11.4g} {:>11.4g}\n", name, start,
+             end.total(), end.kinetic, end.elastic, end.area, end.volume, end.gravity);
+}
+
+/// A table of the energy of each body of masses and springs at the start and at the end.
+void print_energies(const Input& input, const std::vector<BodyEnergy>& start,
+                    const std::vector<BodyEnergy>& end) {
+  if (end.empty()) return;
+  fmt::print("\n{:<20} {:>13} {:>13} {:>11} {:>11} {:>11} {:>11} {:>11}\n", "energy, J", "at the start",
+             "at the end", "kinetic", "elastic", "area", "volume", "gravity");
+  double all_at_start = 0;
+  MassSpringEnergy all;
+  for (std::size_t i = 0; i < end.size(); ++i) {
+    const MassSpringEnergy& energy = end[i].energy;
+    all_at_start += start[i].energy.total();
+    all.kinetic += energy.kinetic;
+    all.elastic += energy.elastic;
+    all.area += energy.area;
+    all.volume += energy.volume;
+    all.gravity += energy.gravity;
+    if (i < most_rows) print_energy(name_of(input, end[i].object), start[i].energy.total(), energy);
+  }
+  if (end.size() > most_rows) fmt::print("and {} more\n", counted(end.size() - most_rows, "object"));
+  if (end.size() > 1) print_energy("all", all_at_start, all);
+}
+
 /// A running simulation and its reports.
 class Run {
  public:
@@ -65,7 +91,7 @@ class Run {
         objects_(objects),
         reports_(options, input, objects, "frame"),
         recorder_(ranks, objects),
-        energies_(input) {}
+        input_(input) {}
 
   void start_recording(const Input& input) { recorder_.start(options_.record, input); }
   /// Runs until the last step, an interruption or a blow-up. Returns the exit status.
@@ -89,14 +115,15 @@ class Run {
   MovingObjects& objects_;
   Reports reports_;
   FrameRecorder recorder_;
-  EnergyTable energies_;
+  const Input& input_;
+  std::vector<BodyEnergy> energies_at_start_, energies_at_end_;
   Clock::time_point start_ = Clock::now();
   std::uint64_t frames_ = 0;  ///< that were added
   double time_ = 0;           ///< simulated, s, of the last of them
 };
 
 int Run::go() {
-  energies_.start(objects_.energies());
+  energies_at_start_ = objects_.energies();
   if (const auto warning = objects_.warning_of_long_steps(); warning && ranks_.rank() == 0)
     fmt::print(stderr, "supple: warning: {}: {}\n", one_line(options_.input), one_line(*warning));
   Interruption interruption(options_.limits.seconds, [this](const Interruption& end) {
@@ -109,7 +136,7 @@ int Run::go() {
       !is_ended(interruption, ranks_) && add_frame(interruption, objects_.detect(request_of(interruption)));
   const bool stable = !is_whole || take_steps(interruption);
   interruption.end();
-  energies_.end(objects_.energies());
+  energies_at_end_ = objects_.energies();
   recorder_.close();
   int status = exit_unusable;
   ranks_.together([&] {
@@ -118,7 +145,7 @@ int Run::go() {
       return;
     }
     finish(false);
-    if (reports_.has_tables()) energies_.print();
+    if (reports_.has_tables()) print_energies(input_, energies_at_start_, energies_at_end_);
     if (stable) status = reports_.exit_status();
   });
   return status;
@@ -177,7 +204,8 @@ int Run::end_early(const Interruption& interruption, Moment moment) {
   finish(true);
   if (ranks_.rank() != 0) return exit_done;
   // In a step, another thread changes the simulation.
-  if (reports_.has_tables() && moment == Moment::between_steps) energies_.print();
+  if (reports_.has_tables() && moment == Moment::between_steps)
+    print_energies(input_, energies_at_start_, energies_at_end_);
   std::string place = fmt::format("{} of {}, {:.6g} s", grouped(frames_ == 0 ? 0 : frames_ - 1),
                                   counted(steps_, "step"), time_);
   if (!options_.record.empty())

@@ -1,4 +1,4 @@
-#include "inputs/child_reader.hpp"
+#include "inputs/frame_files.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -12,13 +12,13 @@
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <memory>
 #include <new>
 #include <span>
 #include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "base/text.hpp"
 #include "supple/error.hpp"
@@ -33,39 +33,16 @@ enum class Answer : char { mesh = 'm', error = 'e', out_of_memory = 'o' };
 class Pipe {
  public:
   Pipe() {
-    if (pipe2(ends_.data(), O_CLOEXEC) != 0)
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0)
       throw Error(fmt::format("cannot create a pipe: {}; close some files", std::strerror(errno)));
-  }
-  ~Pipe() {
-    for (const int end : ends_) close(end);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-
-  void close_write_end() { close(std::exchange(ends_[1], -1)); }
-  bool write_all(const void* data, std::size_t size) const {
-    const char* rest = static_cast<const char*>(data);
-    while (size > 0) {
-      const ssize_t written = write(ends_[1], rest, size);
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) return false;
-      rest += written;
-      size -= static_cast<std::size_t>(written);
-    }
-    return true;
-  }
-  std::vector<char> read_all() const {
-    std::vector<char> bytes;
-    for (std::array<char, 65536> part;;) {
-      const ssize_t count = read(ends_[0], part.data(), part.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return bytes;
-      bytes.insert(bytes.end(), part.begin(), part.begin() + count);
-    }
+    read_end.reset(fdopen(ends[0], "rb"));
+    write_end.reset(fdopen(ends[1], "wb"));
+    if (!read_end || !write_end) throw std::bad_alloc();
   }
 
- private:
-  std::array<int, 2> ends_{-1, -1};
+  std::unique_ptr<std::FILE, decltype(&std::fclose)> read_end{nullptr, &std::fclose};
+  std::unique_ptr<std::FILE, decltype(&std::fclose)> write_end{nullptr, &std::fclose};
 };
 
 /// The lists of a file, each as its length and its bytes. `visit(list)` writes or reads one. `clips` has a
@@ -79,30 +56,28 @@ bool for_each_list(File& file, Text& clips, Visit visit) {
          visit(mesh.points) && visit(polygons) && visit(clips) && visit(frame);
 }
 
-bool write_file(const Pipe& pipe, const MeshFile& file) {
-  const Answer answer = Answer::mesh;
-  std::string clips;
-  for (const std::string& name : file.clips) clips.append(name.c_str(), std::strlen(name.c_str()) + 1);
-  return pipe.write_all(&answer, 1) && for_each_list(file, clips, [&](const auto& list) {
-           const std::uint64_t count = list.size();
-           return pipe.write_all(&count, sizeof count) && pipe.write_all(list.data(), count * sizeof list[0]);
-         });
+bool write_list(std::FILE* stream, const auto& list) {
+  const std::uint64_t count = list.size();
+  return std::fwrite(&count, sizeof count, 1, stream) == 1 &&
+         std::fwrite(list.data(), sizeof list[0], count, stream) == count;
 }
 
-bool read_file(std::span<const char> bytes, MeshFile& file) {
+bool read_list(std::FILE* stream, auto& list) {
+  std::uint64_t count = 0;
+  if (std::fread(&count, sizeof count, 1, stream) != 1) return false;
+  if constexpr (requires { list.resize(count); }) list.resize(count);
+  return count == list.size() && std::fread(list.data(), sizeof list[0], count, stream) == count;
+}
+
+bool write_file(std::FILE* stream, const MeshFile& file) {
   std::string clips;
-  const bool is_complete = for_each_list(file, clips, [&](auto& list) {
-    std::uint64_t count = 0;
-    if (bytes.size() < sizeof count) return false;
-    std::memcpy(&count, bytes.data(), sizeof count);
-    bytes = bytes.subspan(sizeof count);
-    if (count > bytes.size() / sizeof list[0]) return false;
-    if constexpr (requires { list.resize(count); }) list.resize(count);
-    if (count != list.size()) return false;
-    if (count > 0) std::memcpy(list.data(), bytes.data(), count * sizeof list[0]);
-    bytes = bytes.subspan(count * sizeof list[0]);
-    return true;
-  });
+  for (const std::string& name : file.clips) clips.append(name.c_str(), std::strlen(name.c_str()) + 1);
+  return for_each_list(file, clips, [&](const auto& list) { return write_list(stream, list); });
+}
+
+bool read_file(std::FILE* stream, MeshFile& file) {
+  std::string clips;
+  const bool is_complete = for_each_list(file, clips, [&](auto& list) { return read_list(stream, list); });
   for (std::size_t begin = 0; begin < clips.size(); begin = clips.find('\0', begin) + 1)
     file.clips.emplace_back(clips.c_str() + begin);
   return is_complete;
@@ -115,16 +90,19 @@ bool read_file(std::span<const char> bytes, MeshFile& file) {
   // Assimp prints when it fails.
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
-  bool is_written = false;
-  const auto write_text = [&](Answer answer, std::string_view text) {
-    is_written = pipe.write_all(&answer, 1) && pipe.write_all(text.data(), text.size());
+  std::FILE* const stream = pipe.write_end.get();
+  const auto send = [&](Answer answer, auto write_content) {
+    return std::fputc(static_cast<char>(answer), stream) != EOF && write_content() &&
+           std::fflush(stream) == 0;
   };
+  bool is_written = false;
   try {
-    is_written = write_file(pipe, read_mesh_file(path));
+    const MeshFile file = read_mesh_file(path);
+    is_written = send(Answer::mesh, [&] { return write_file(stream, file); });
   } catch (const Error& error) {
-    write_text(Answer::error, error.what());
+    is_written = send(Answer::error, [&] { return write_list(stream, std::string(error.what())); });
   } catch (const std::bad_alloc&) {
-    write_text(Answer::out_of_memory, "");
+    is_written = send(Answer::out_of_memory, [] { return true; });
   }
   // Not exit, which would flush the buffers of the parent once more.
   _exit(is_written ? 0 : 1);
@@ -139,18 +117,21 @@ MeshFile read_in_child(const std::filesystem::path& path) {
     throw Error(
         fmt::format("{}: cannot start a process that reads it: {}", path.string(), std::strerror(errno)));
   if (child == 0) run_child(pipe, path);
-  pipe.close_write_end();
-  const std::vector<char> bytes = pipe.read_all();
+  pipe.write_end.reset();
+  MeshFile file;
+  std::string error;
+  const Answer answer{static_cast<char>(std::fgetc(pipe.read_end.get()))};
+  const bool is_read = answer == Answer::mesh    ? read_file(pipe.read_end.get(), file)
+                       : answer == Answer::error ? read_list(pipe.read_end.get(), error)
+                                                 : answer == Answer::out_of_memory;
+  pipe.read_end.reset();
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  MeshFile file;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && !bytes.empty()) {
-    const std::span<const char> content = std::span(bytes).subspan(1);
-    const Answer answer{bytes.front()};
-    if (answer == Answer::mesh && read_file(content, file)) return file;
-    if (answer == Answer::error) throw Error(std::string(content.begin(), content.end()));
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && is_read) {
+    if (answer == Answer::error) throw Error(error);
     if (answer == Answer::out_of_memory) throw std::bad_alloc();
+    return file;
   }
   throw Error(
       one_line(fmt::format("{}: Assimp, the library that reads this format, crashed. The file may be fine; "

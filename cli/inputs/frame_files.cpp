@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "inputs/child_reader.hpp"
 #include "supple/error.hpp"
 
 namespace supple::cli {

@@ -58,4 +58,8 @@ constexpr bool is_given(const CoordinateConversion& conversion) {
 /// process. Throws `Error` when the file does not exist.
 MeshFile read_mesh(const std::filesystem::path& path, const CoordinateConversion& conversion = {});
 
+/// As `read_mesh_file`, in a child process. So a file that makes Assimp crash is an `Error`, and not the end
+/// of this program.
+MeshFile read_in_child(const std::filesystem::path& path);
+
 }  // namespace supple::cli

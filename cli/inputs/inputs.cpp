@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -13,7 +14,6 @@
 
 #include "base/text.hpp"
 #include "inputs/clips.hpp"
-#include "inputs/recorded_input.hpp"
 #include "scene_file/scene_file.hpp"
 #include "supple/error.hpp"
 #include "supple/formats.hpp"
@@ -266,6 +266,31 @@ bool is_scene_file(const std::string& name) {
   return lower_case_extension(name) == ".toml";
 }
 
+bool is_recording(const std::string& name) {
+  const std::string extension = lower_case_extension(name);
+  return extension == ".h5" || extension == ".hdf5";
+}
+
+Input read_recording(const std::string& name) {
+  const auto recording = std::make_shared<const Recording>(name);
+  if (recording->frame_count() == 0)
+    throw Error(fmt::format("{}: the recording has no frame; record some steps", name));
+  const RecordingHeader& header = recording->header();
+  Input input;
+  input.files = {name};
+  input.frames = {name, recording->frame_count()};
+  input.simulation.time_step = header.time_step;
+  for (std::size_t i = 0; i < header.objects.size(); ++i) {
+    const RecordedObject& object = header.objects[i];
+    InputObject& added = input.objects.emplace_back();
+    added.options = object.options;
+    added.mesh = {object.options.name, recording->positions(0, i), object.triangles,
+                  std::exchange(added.options.edges, {}), std::exchange(added.options.points, {})};
+    if (!object.options.is_static) added.motion = RecordedMotion{recording, i};
+  }
+  return input;
+}
+
 Input read_objects(const std::vector<std::string>& names, const SceneOverrides& overrides,
                    const MeshReading& reading) {
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
@@ -308,6 +333,25 @@ Input read_sequence(const std::vector<std::string>& names, const CoordinateConve
   if (is_given(conversion)) check_conversion({first.frame}, conversion);
   input.objects.push_back({std::move(first.mesh), {}, std::move(frames)});
   return input;
+}
+
+std::optional<ComputedMotion> frames_of(const InputObject& object) {
+  if (!object.motion) return std::nullopt;
+  if (const auto* sequence = std::get_if<FrameSequence>(&*object.motion)) {
+    const auto files = std::make_shared<const FrameFiles>(*sequence, object.mesh);
+    return ComputedMotion{sequence->files.size(), [files](std::uint64_t frame, std::span<Vec3d> positions) {
+                            files->read(frame, positions);
+                          }};
+  }
+  if (const auto* recorded = std::get_if<RecordedMotion>(&*object.motion)) {
+    return ComputedMotion{recorded->recording->frame_count(),
+                          [motion = *recorded](std::uint64_t frame, std::span<Vec3d> positions) {
+                            std::ranges::copy(motion.recording->positions(frame, motion.object),
+                                              positions.begin());
+                          }};
+  }
+  const auto* computed = std::get_if<ComputedMotion>(&*object.motion);
+  return computed ? std::optional(*computed) : std::nullopt;
 }
 
 std::size_t count_finite_triangles(const TriangleMesh& mesh) {

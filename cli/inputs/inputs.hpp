@@ -74,6 +74,8 @@ struct Input {
 };
 
 bool is_scene_file(const std::string& name);
+/// True for the extensions .h5 and .hdf5.
+bool is_recording(const std::string& name);
 
 /// Reads meshes, one object each, by name or quoted pattern (`part*.obj`, sorted by the numbers in the
 /// names); or one scene file; or one recording.
@@ -81,6 +83,20 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
                    const MeshReading& reading = {});
 /// Reads a sequence: the object of the first frame, moved by all frames.
 Input read_sequence(const std::vector<std::string>& names, const CoordinateConversion& conversion = {});
+/// Reads the objects of a recording with their options, in its order, with the positions of the first frame.
+/// Throws `Error` when it cannot be read or has no frame.
+Input read_recording(const std::string& name);
+/// The frames of an object that mesh files, an animation or a recording move; nothing for others.
+std::optional<ComputedMotion> frames_of(const InputObject& object);
+/// Replaces each object with `InputObject::splits` by its connected parts, in their order. A part is solid
+/// when the object is and the part bounds a solid. Adds a note where parts of a solid that is not split
+/// intersect. Throws `Error` for objects of a recording.
+void split_parts(Input& input);
+
+/// A sentence that names the parts that are solid, and why the others are not; empty without parts of solid
+/// objects.
+std::string describe_solid_parts(const Input& input);
+
 /// `walk.glb: has 2 clips: walk, run; ` and the advice.
 std::string clips_note(const std::filesystem::path& path, const std::vector<std::string>& clips,
                        const char* advice);

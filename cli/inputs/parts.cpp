@@ -1,4 +1,4 @@
-#include "inputs/parts.hpp"
+#include "inputs/inputs.hpp"
 
 #include <fmt/core.h>
 
@@ -36,15 +36,8 @@ std::vector<std::uint32_t> ids_in_part(const std::vector<std::uint32_t>& of_mesh
 /// The frames of a whole mesh, for its parts, which read one frame after the other.
 class WholeFrames {
  public:
-  explicit WholeFrames(const InputObject& whole) : positions_(whole.mesh.positions.size()) {
-    if (const auto* const sequence = std::get_if<FrameSequence>(&*whole.motion)) {
-      const auto files = std::make_shared<const FrameFiles>(*sequence, whole.mesh);
-      motion_ = {sequence->files.size(),
-                 [files](std::uint64_t frame, std::span<Vec3d> positions) { files->read(frame, positions); }};
-    } else {
-      motion_ = std::get<ComputedMotion>(*whole.motion);
-    }
-  }
+  explicit WholeFrames(const InputObject& whole)
+      : motion_(*frames_of(whole)), positions_(whole.mesh.positions.size()) {}
   std::uint64_t count() const { return motion_.count; }
   void read(std::uint64_t frame, std::span<const std::uint32_t> vertices, std::span<Vec3d> positions) {
     const std::lock_guard lock(mutex_);

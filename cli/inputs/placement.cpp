@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "inputs/random.hpp"
 #include "supple/trigonometry.hpp"
 
 namespace supple::cli {

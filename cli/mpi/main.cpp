@@ -9,11 +9,8 @@
 #include "base/exit_status.hpp"
 #include "base/run_program.hpp"
 #include "base/text.hpp"
-#include "commands/detect.hpp"
-#include "commands/simulate.hpp"
-#include "moving/launcher.hpp"
+#include "commands/commands.hpp"
 #include "mpi/mpi_ranks.hpp"
-#include "options/options.hpp"
 #include "supple/error.hpp"
 
 namespace supple::cli {

@@ -59,16 +59,6 @@ void add_object_options(CLI::App& app, viewer::Overrides<ObjectOptions>& objects
   });
 }
 
-void add_impact_options(CLI::App& app, ImpactOptions& impact) {
-  for_each_leaf(
-      [&](const auto& field, auto& value) {
-        if (field.key == std::string_view("max_time") || field.key == std::string_view("skip_parting"))
-          return;
-        add_field(app, field, value, [&value](const auto& given) { value = given; });
-      },
-      impact);
-}
-
 void add_parts(CLI::App& app, bool& parts, const char* group) {
   app.add_flag(
          "--parts", parts,
@@ -80,13 +70,6 @@ void add_parts(CLI::App& app, bool& parts, const char* group) {
 
 CLI::Option* add_frames(CLI::App& app, std::optional<std::uint64_t>& frames, const char* description) {
   return add_number(app, "--frames,--steps", frames, 1, 1'000'000'000, description);
-}
-
-void add_kind(CLI::App& app, std::optional<QueryKind>& kind) {
-  add_words(
-      app, "--kind", {words<QueryKind>.begin(), words<QueryKind>.end()},
-      [&kind](std::size_t place) { kind = static_cast<QueryKind>(place); },
-      "Kind of the queries (default: from the names of folders and files)");
 }
 
 void add_conversion(CLI::App& app, CoordinateConversion& conversion) {
@@ -110,15 +93,12 @@ void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& se
              "as 'frame_*.ply' is sorted by the numbers in the names")
           ->group("Input");
   const auto group = [frames](CLI::Option* option) { option->group("Input")->excludes(frames); };
-  group(app.add_option_function<std::string>(
-               "--clip", [&reading](const std::string& name) { reading.clips.clip = name; },
-               "Animation of glTF, FBX or COLLADA files to play, by name (default: the first)")
+  group(app.add_option("--clip", reading.clips.clip,
+                       "Animation of glTF, FBX or COLLADA files to play, by name (default: the first)")
             ->type_name("NAME"));
-  group(add_real(
-      app, "--fps", ValueRange::above(0), "frames per second",
-      [&reading](double fps) { reading.clips.fps = fps; },
-      "Play the animation at this rate (default: with --frames N, N frames evenly from its start to its end; "
-      "otherwise 25)"));
+  group(add_real(app, "--fps", ValueRange::above(0), "frames per second", reading.clips.fps,
+                 "Play the animation at this rate (default: with --frames N, N frames evenly from its start "
+                 "to its end; otherwise 25)"));
   group(
       app.add_option("--cache", reading.cache,
                      "Point cache with the positions of the mesh in each frame; its vertices have the order "
@@ -177,71 +157,68 @@ void add_fused_refit(CLI::App& app, MethodOptions& options, Dependences& depende
 
 void add_report_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
   const auto add = [&](const char* name, bool& value, const char* description) {
-    dependences.push_back({app.add_flag(name, value, description)->group("Detection"),
-                           [&options] { return options.scene.contacts != ContactKinds::none; },
-                           "--contacts intersection or another kind"});
+    Heading{"Detection", dependences}(
+        app.add_flag(name, value, description),
+        [&options] { return options.scene.contacts != ContactKinds::none; },
+        "--contacts intersection or another kind");
   };
   add("--fail-on-contact", options.fail_on_contact,
       "Exit with status 1 when anything touches, is near with --contacts proximity, or is inside a solid "
       "with --contacts penetration; otherwise with status 2 when a kind of contacts had nothing to test");
   add("--verify", options.verify,
       "Check each frame by exact brute force over all pairs of triangles, elements, or vertices and "
-      "triangles; exit with status 3 "
-      "when the results differ");
+      "triangles; exit with status 3 when the results differ");
 }
 
 void add_output_options(CLI::App& app, DetectionOptions& options, Dependences& dependences) {
-  const auto group = [](CLI::Option* option) { return option->group("Output"); };
-  group(add_file(app, "--json", options.json, "Write all results, frame by frame; - is standard output"));
-  dependences.push_back(
-      {group(add_file(
-           app, "--csv", options.csv,
-           "Write one row per contact; with penetration, one per vertex inside a solid. The first row names "
-           "the columns; - is standard output. With --colliding-vertices the columns are frame,a,b,kind,i,j: "
-           "also for each vertex in colliding leaves, and for the begin and end of each collision of the "
-           "narrow phase")),
-       [&] {
-         const auto kinds = static_cast<unsigned>(options.scene.contacts);
-         const auto included = static_cast<unsigned>(ContactKinds::intersection);
-         if (options.scene.comparison.colliding_vertices) return true;
-         return std::popcount(has_penetration(options.scene) ? kinds & ~included : kinds) == 1;
-       },
-       "contacts of one kind"});
-  dependences.push_back(
-      {group(app.add_flag_callback(
-           "--no-stats", [&] { options.json_content.stats = false; },
-           "Leave options, times and counts out of the JSON, so that equal results give equal files")),
-       [&] { return !options.json.empty(); }, "--json"});
-  dependences.push_back(
-      {group(app.add_flag(
-           "--contact-details", options.json_content.contact_details,
-           "Also write each contact to the JSON: for triangles the kind, the normal and the points; for "
-           "continuous contacts the barycentric coordinates, the point and the normal; for proximity also "
-           "both points; for penetration the way out, and the points and enclosed vertices of curves. Adds "
-           "vectors and barycentric coordinates to the CSV")),
-       [&] {
-         const bool has_table = !options.csv.empty() && !options.scene.comparison.colliding_vertices;
-         return (!options.json.empty() || has_table) && options.scene.contacts != ContactKinds::none;
-       },
-       "--json or --csv, and contacts"});
-  dependences.push_back({group(app.add_flag("--faces", options.json_content.faces,
-                                            "Also write the three vertices of each triangle to the JSON; a "
-                                            "polygon of n corners is n - 2 triangles")),
-                         [&] { return !options.json.empty(); }, "--json"});
-  dependences.push_back(
-      {group(app.add_option_function<std::vector<std::uint32_t>>(
-                    "--node-pairs",
-                    [&options](const std::vector<std::uint32_t>& objects) {
-                      options.json_content.node_pairs = {objects[0], objects[1]};
-                    },
-                    "Print the descent of the narrow phase into the octrees of two objects, by number, as in "
-                    "the paper: the pairs of nodes (h, k) that collide, level by level, in the last frame. "
-                    "The JSON has all pairs of every frame")
-                 ->type_name("A B")
-                 ->expected(2)),
-       [&] { return !options.json.empty() || (!options.quiet && options.csv != "-"); },
-       "--json or tables on standard output"});
-  group(app.add_flag("--quiet", options.quiet, "Print no tables and no progress"));
+  const Heading add{"Output", dependences};
+  const auto has_json = [&options] { return !options.json.empty(); };
+  const auto has_one_kind = [&options] {
+    if (options.scene.comparison.colliding_vertices) return true;
+    const auto kinds = static_cast<unsigned>(options.scene.contacts);
+    const auto included = static_cast<unsigned>(ContactKinds::intersection);
+    return std::popcount(has_penetration(options.scene) ? kinds & ~included : kinds) == 1;
+  };
+  const auto has_details = [&options] {
+    const bool has_table = !options.csv.empty() && !options.scene.comparison.colliding_vertices;
+    return (!options.json.empty() || has_table) && options.scene.contacts != ContactKinds::none;
+  };
+  const auto has_tables = [&options] {
+    return !options.json.empty() || (!options.quiet && options.csv != "-");
+  };
+  add(add_file(app, "--json", options.json, "Write all results, frame by frame; - is standard output"));
+  add(add_file(app, "--csv", options.csv,
+               "Write one row per contact; with penetration, one per vertex inside a solid. The first row "
+               "names the columns; - is standard output. With --colliding-vertices the columns are "
+               "frame,a,b,kind,i,j: also for each vertex in colliding leaves, and for the begin and end of "
+               "each collision of the narrow phase"),
+      has_one_kind, "contacts of one kind");
+  add(app.add_flag_callback(
+          "--no-stats", [&] { options.json_content.stats = false; },
+          "Leave options, times and counts out of the JSON, so that equal results give equal files"),
+      has_json, "--json");
+  add(app.add_flag("--contact-details", options.json_content.contact_details,
+                   "Also write each contact to the JSON: for triangles the kind, the normal and the points; "
+                   "for continuous contacts the barycentric coordinates, the point and the normal; for "
+                   "proximity also both points; for penetration the way out, and the points and enclosed "
+                   "vertices of curves. Adds vectors and barycentric coordinates to the CSV"),
+      has_details, "--json or --csv, and contacts");
+  add(app.add_flag("--faces", options.json_content.faces,
+                   "Also write the three vertices of each triangle to the JSON; a polygon of n corners is n "
+                   "- 2 triangles"),
+      has_json, "--json");
+  add(app.add_option_function<std::vector<std::uint32_t>>(
+             "--node-pairs",
+             [&options](const std::vector<std::uint32_t>& objects) {
+               options.json_content.node_pairs = {objects[0], objects[1]};
+             },
+             "Print the descent of the narrow phase into the octrees of two objects, by number, as in the "
+             "paper: the pairs of nodes (h, k) that collide, level by level, in the last frame. The JSON has "
+             "all pairs of every frame")
+          ->type_name("A B")
+          ->expected(2),
+      has_tables, "--json or tables on standard output");
+  add(app.add_flag("--quiet", options.quiet, "Print no tables and no progress"));
 }
 
 }  // namespace supple::cli

@@ -33,10 +33,6 @@ bool is_word(const std::string& given, const char* word) {
   return given == word || given == spelled(word);
 }
 
-std::string help_of(const char* doc, const std::string& unit, const std::string& default_value) {
-  return fmt::format("{} ({}default: {})", doc, unit.empty() ? "" : unit + "; ", default_value);
-}
-
 std::size_t index_of_word(const std::string& name, const std::vector<const char*>& choices,
                           const std::string& given) {
   std::vector<std::string> spellings;

@@ -52,6 +52,13 @@ CLI::Option* add_whole(CLI::App& app, const std::string& name, const ValueRange&
                        std::function<void(std::uint64_t)> set, const std::string& description);
 CLI::Option* add_real(CLI::App& app, const std::string& name, const ValueRange& range, const char* unit,
                       std::function<void(double)> set, const std::string& description);
+template <class Number>
+CLI::Option* add_real(CLI::App& app, const std::string& name, const ValueRange& range, const char* unit,
+                      Number& value,
+                      const std::string& description) requires std::is_assignable_v<Number&, double> {
+  return add_real(
+      app, name, range, unit, [&value](double given) { value = given; }, description);
+}
 
 /// An option with a list of values: given several times, or once with commas. `add` gets each value; a value
 /// that is given twice is an error.
@@ -77,15 +84,15 @@ std::string spelled_value(const Field<Struct, Value>& field, const Value& value)
   }
 }
 
-/// `Shape of the octree (triangles; default: 64)`
-std::string help_of(const char* doc, const std::string& unit, const std::string& default_value);
-
 /// An option of a structure, made from its description. `set` gets the value. A truth value without words
 /// becomes a flag that negates the default.
 template <class Struct, class Value, class Set>
 CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const Value& default_value,
                        Set set) {
   const std::string name = flag_of(field.key);
+  // `Shape of the octree (triangles; default: 64)`
+  const std::string help = fmt::format("{} ({}{}default: {})", field.doc, field.unit, *field.unit ? "; " : "",
+                                       spelled_value(field, default_value));
   if constexpr (WordedSet<Value>) {
     const auto parse = [name, set](const std::string& given) {
       const std::optional<Value> value = value_of_set<Value>(given);
@@ -93,21 +100,17 @@ CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const V
         throw CLI::ValidationError(name, fmt::format("'{}' is not {}", given, list_of_set_words<Value>()));
       set(*value);
     };
-    return app
-        .add_option_function<std::string>(name, parse,
-                                          help_of(field.doc, field.unit, spelled_value(field, default_value)))
+    return app.add_option_function<std::string>(name, parse, help)
         ->type_name(fmt::format("{}", fmt::join(set_words<Value>, "|")));
   } else if constexpr (Worded<Value>) {
     return add_words(
         app, name, {words<Value>.begin(), words<Value>.end()},
-        [set](std::size_t place) { set(static_cast<Value>(place)); },
-        help_of(field.doc, field.unit, spelled_value(field, default_value)));
+        [set](std::size_t place) { set(static_cast<Value>(place)); }, help);
   } else if constexpr (std::is_same_v<Value, bool>) {
     if (field.has_truth_words())
       return add_words(
           app, name, {field.truth_words.begin(), field.truth_words.end()},
-          [set](std::size_t place) { set(place == 1); },
-          help_of(field.doc, field.unit, spelled_value(field, default_value)));
+          [set](std::size_t place) { set(place == 1); }, help);
     if (!default_value)
       return app.add_flag_callback(
           name, [set] { set(true); }, field.doc);
@@ -116,14 +119,12 @@ CLI::Option* add_field(CLI::App& app, const Field<Struct, Value>& field, const V
     return app.add_flag_callback(
         "--no-" + name.substr(2), [set] { set(false); }, negated);
   } else if constexpr (std::is_same_v<Value, double>) {
-    return add_real(app, name, field.range, field.unit, set,
-                    help_of(field.doc, field.unit, spelled_value(field, default_value)));
+    return add_real(app, name, field.range, field.unit, set, help);
   } else {
     ValueRange range = field.range;
     range.highest = std::min(range.highest, static_cast<double>(std::numeric_limits<Value>::max()));
     return add_whole(
-        app, name, range, [set](std::uint64_t value) { set(static_cast<Value>(value)); },
-        help_of(field.doc, field.unit, spelled_value(field, default_value)));
+        app, name, range, [set](std::uint64_t value) { set(static_cast<Value>(value)); }, help);
   }
 }
 
@@ -147,6 +148,18 @@ struct Dependence {
   std::string needs;
 };
 using Dependences = std::vector<Dependence>;
+
+/// Adds options to one heading of the help, each with what it needs, if anything.
+struct Heading {
+  const char* name;
+  Dependences& dependences;
+
+  CLI::Option* operator()(CLI::Option* option, const std::function<bool()>& satisfied = {},
+                          const char* needs = "") const {
+    if (satisfied) dependences.push_back({option, satisfied, needs});
+    return option->group(name);
+  }
+};
 
 /// Throws a usage error for the first given option whose dependence is not satisfied.
 void check(const Dependences& dependences);

@@ -61,22 +61,6 @@ bool is_at_rest(const SceneOptions& scene) {
   return scene.contacts == ContactKinds::none || has_intersections(scene);
 }
 
-bool has_intersections(const SceneOptions& scene) {
-  return contains(with_included(scene.contacts), ContactKinds::intersection);
-}
-
-bool has_continuous(const SceneOptions& scene) {
-  return contains(scene.contacts, ContactKinds::continuous);
-}
-
-bool has_proximity(const SceneOptions& scene) {
-  return contains(scene.contacts, ContactKinds::proximity);
-}
-
-bool has_penetration(const SceneOptions& scene) {
-  return contains(scene.contacts, ContactKinds::penetration);
-}
-
 std::span<const OptionNeed> option_needs() {
   return needs;
 }

@@ -26,10 +26,15 @@ std::span<const OptionNeed> option_needs();
 bool is_at_rest(const SceneOptions& scene);
 /// Whether the regions of the scene octree may be used.
 bool has_scene_octree(const SceneOptions& scene);
-bool has_intersections(const SceneOptions& scene);
-bool has_continuous(const SceneOptions& scene);
-bool has_proximity(const SceneOptions& scene);
-bool has_penetration(const SceneOptions& scene);
+/// Whether the scene finds these contacts.
+template <ContactKinds kind>
+bool finds(const SceneOptions& scene) {
+  return contains(with_included(scene.contacts), kind);
+}
+inline constexpr auto has_intersections = finds<ContactKinds::intersection>;
+inline constexpr auto has_continuous = finds<ContactKinds::continuous>;
+inline constexpr auto has_proximity = finds<ContactKinds::proximity>;
+inline constexpr auto has_penetration = finds<ContactKinds::penetration>;
 bool has_spheres(const SceneOptions& scene);
 
 }  // namespace supple::cli

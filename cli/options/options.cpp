@@ -17,13 +17,11 @@
 
 #include "base/exit_status.hpp"
 #include "base/text.hpp"
-#include "inputs/recorded_input.hpp"
-#include "options/documents.hpp"
+#include "inputs/inputs.hpp"
 #include "options/help_footers.hpp"
 #include "options/option_groups.hpp"
 #include "options/option_kinds.hpp"
 #include "options/option_needs.hpp"
-#include "options/view_commands.hpp"
 #include "scene_file/scene_file.hpp"
 #include "session/settings.hpp"
 #include "supple/comparison.hpp"
@@ -44,7 +42,7 @@ SimulationOptions options_of(const std::vector<std::string>& inputs) {
   return options;
 }
 
-CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dependences) {
+void add_detect(CLI::App& program, DetectOptions& options, Dependences& dependences) {
   CLI::App* app =
       program.add_subcommand("detect", "Find every contact of static meshes, a sequence or a scene");
   app->footer(detect_footer);
@@ -81,7 +79,6 @@ CLI::App* add_detect(CLI::App& program, DetectOptions& options, Dependences& dep
        "contacts other than penetration, and no --verify"});
   add_time_limit(*app, options.limits)->group("Detection");
   add_output_options(*app, options, dependences);
-  return app;
 }
 
 void add_simulation_options(CLI::App& app, SimulateOptions& options) {
@@ -90,14 +87,13 @@ void add_simulation_options(CLI::App& app, SimulateOptions& options) {
   CLI::Option* const frames =
       group(add_frames(app, options.frames,
                        "Number of frames; frame 0 is the start (default: 301 frames, which are 300 steps)"));
-  group(add_real(
-            app, "--seconds", ValueRange::above(0), "s", [&](double seconds) { options.seconds = seconds; },
-            "Simulated time; instead of --frames"))
+  group(add_real(app, "--seconds", ValueRange::above(0), "s", options.seconds,
+                 "Simulated time; instead of --frames"))
       ->excludes(frames);
   add_scene_overrides(app, options.seed, options.time_step);
 }
 
-CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences& dependences) {
+void add_simulate(CLI::App& program, SimulateOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand(
       "simulate", "Simulate the motion of the objects of a scene and find their contacts in each frame");
   app->footer(simulate_footer);
@@ -112,10 +108,9 @@ CLI::App* add_simulate(CLI::App& program, SimulateOptions& options, Dependences&
       ->type_name("FILE.h5")
       ->group("Output");
   add_output_options(*app, options, dependences);
-  return app;
 }
 
-CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& dependences) {
+void add_info(CLI::App& program, InfoOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand("info", "Print statistics of meshes and of their octrees");
   app->footer(info_footer);
   app->add_option("MESH|SCENE.toml", options.inputs, "Meshes, or one scene file")->required()->type_name("");
@@ -139,7 +134,6 @@ CLI::App* add_info(CLI::App& program, InfoOptions& options, Dependences& depende
   add_weld(*app, options.given_objects);
   add_parts(*app, options.parts, "Options");
   add_file(*app, "--json", options.json, "Write the result as JSON; - is standard output");
-  return app;
 }
 
 CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& dependences) {
@@ -165,20 +159,19 @@ CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& depen
   app->add_option("MESH|SCENE.toml|RUN.h5", options.inputs,
                   "Meshes, one per object; or one scene file; or one recording")
       ->type_name("");
-  dependences.push_back(
-      {add_real(
-           *app, "--max-distance", ValueRange::from(0), "length",
-           [&](double distance) { options.max_distance = distance; },
-           "Leave out triangles and objects that are farther away than this (default: any distance)"),
-       [&] { return options.kind == SceneQuery::closest || options.kind == SceneQuery::distance; },
-       "the question closest or distance"});
-  dependences.push_back(
-      {app->add_flag("--signed", options.signed_distance,
-                     "Distances of points inside are negative; the surfaces must be closed"),
-       [&] { return options.kind == SceneQuery::closest; }, "the question closest"});
-  dependences.push_back(
-      {app->add_flag("--all-hits", options.all_hits, "Also count all triangles on each ray"),
-       [&] { return options.kind == SceneQuery::rays; }, "the question rays"});
+  const Heading add{"Options", dependences};
+  add(
+      add_real(*app, "--max-distance", ValueRange::from(0), "length", options.max_distance,
+               "Leave out triangles and objects that are farther away than this (default: any distance)"),
+      [&] { return options.kind == SceneQuery::closest || options.kind == SceneQuery::distance; },
+      "the question closest or distance");
+  add(
+      app->add_flag("--signed", options.signed_distance,
+                    "Distances of points inside are negative; the surfaces must be closed"),
+      [&] { return options.kind == SceneQuery::closest; }, "the question closest");
+  add(
+      app->add_flag("--all-hits", options.all_hits, "Also count all triangles on each ray"),
+      [&] { return options.kind == SceneQuery::rays; }, "the question rays");
   options.given_scene.for_each_setter([&]<class Struct, class Value>(const Field<Struct, Value>& field,
                                                                      const Value& default_value, auto set) {
     if constexpr (std::is_same_v<Value, std::uint32_t>) {
@@ -210,34 +203,45 @@ void sort_arguments(QueryOptions& options) {
   if (options.inputs.empty()) throw CLI::RequiredError("MESH|SCENE.toml|RUN.h5");
 }
 
-CLI::App* add_ccd_queries(CLI::App& program, CcdQueriesOptions& options, Dependences& dependences) {
+void add_ccd_queries(CLI::App& program, CcdQueriesOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand("ccd-queries",
                                          "Answer published vertex-face and edge-edge queries of continuous "
                                          "collision, and compare with their answers");
   app->footer(ccd_queries_footer);
   app->add_option("FILE.csv", options.inputs, "Files of queries")->required()->type_name("");
-  add_kind(*app, options.kind);
+  add_words(
+      *app, "--kind", {words<QueryKind>.begin(), words<QueryKind>.end()},
+      [&options](std::size_t place) { options.kind = static_cast<QueryKind>(place); },
+      "Kind of the queries (default: from the names of folders and files)");
   app->add_option("--answers", options.answers,
                   "JSON list with true or false for each query, for files without a column of answers; give "
                   "the option once per file, in the same order")
       ->type_name("FILE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add_impact_options(*app, options.impact);
+  for_each_leaf(
+      [&](const auto& field, auto& value) {
+        const std::string_view key = field.key;  // the others have no effect on the answer of a single query
+        if (key == "min_separation" || key == "undecided")
+          add_field(*app, field, value, [&value](const auto& given) { value = given; });
+      },
+      options.impact);
   app->add_flag("--verify", options.verify,
                 "Also decide each query by algebra, and compare the result and the time; exit with status 3 "
                 "when they differ");
-  dependences.push_back({app->add_flag("--list-false", options.list_false,
-                                       "List each query whose result differs from its published answer"),
-                         [&] { return !options.quiet && options.json != "-"; }, "tables on standard output"});
+  const Heading add{"Options", dependences};
+  add(
+      app->add_flag("--list-false", options.list_false,
+                    "List each query whose result differs from its published answer"),
+      [&] { return !options.quiet && options.json != "-"; }, "tables on standard output");
   add_file(*app, "--json", options.json,
            "Write the time of every impact and all counts; - is standard output");
-  dependences.push_back({app->add_flag_callback(
-                             "--no-stats", [&] { options.json_stats = false; },
-                             "Leave measured times out of the JSON, so that equal results give equal files"),
-                         [&] { return !options.json.empty(); }, "--json"});
+  add(
+      app->add_flag_callback(
+          "--no-stats", [&] { options.json_stats = false; },
+          "Leave measured times out of the JSON, so that equal results give equal files"),
+      [&] { return !options.json.empty(); }, "--json");
   app->add_flag("--quiet", options.quiet, "Print no table and no progress");
-  return app;
 }
 
 void add_diff(CLI::App& program, DiffOptions& options) {
@@ -248,10 +252,9 @@ void add_diff(CLI::App& program, DiffOptions& options) {
       ->required()
       ->expected(2)
       ->type_name("");
-  add_real(
-      *app, "--tolerance", ValueRange::from(0), "length",
-      [&](double tolerance) { options.tolerance = tolerance; },
-      "Largest difference of coordinates that counts as equal, in their unit (default: 0, the same bits)");
+  add_real(*app, "--tolerance", ValueRange::from(0), "length", options.tolerance,
+           "Largest difference of coordinates that counts as equal, in their unit (default: 0, the same "
+           "bits)");
   add_file(*app, "--json", options.json, "Write the result as JSON; - is standard output");
   app->add_flag("--quiet", options.quiet, "Print nothing; only set the exit status");
 }
@@ -332,27 +335,26 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments,
   program.footer(program_footer);
   program.set_version_flag("--version", "supple " SUPPLE_VERSION, "Print the version and exit");
   program.require_subcommand(0, 1);
-  std::string document;
-  program
-      .add_option("--generate", document, "Print a document made from these options: man, markdown or tables")
-      ->group("");
+  bool describes = false;
+  program.add_flag("--describe", describes, "Print what documents are made from, as JSON")->group("");
 
   Dependences dependences;
-  const CLI::App* detect = add_detect(program, result.detect, dependences);
-  const CLI::App* simulate = add_simulate(program, result.simulate, dependences);
-  const CLI::App* view = add_view(program, result.view, dependences);
-  const CLI::App* render = add_render(program, result.render, dependences);
-  const CLI::App* info = add_info(program, result.info, dependences);
+  // In the order of `CommandLine::Command`.
+  add_detect(program, result.detect, dependences);
+  add_simulate(program, result.simulate, dependences);
+  add_view(program, result.view, dependences);
+  add_render(program, result.render, dependences);
+  add_info(program, result.info, dependences);
   const CLI::App* query = add_query(program, result.query, dependences);
-  const CLI::App* ccd_queries = add_ccd_queries(program, result.ccd_queries, dependences);
+  add_ccd_queries(program, result.ccd_queries, dependences);
   add_diff(program, result.diff);
   CLI::App* const experiment = program.add_subcommand(
       "experiment", "Repeat the paper's experiments and report which of its claims hold");
   if (add_options) add_options(*experiment, dependences);
   try {
     program.parse(argument_count, arguments);
-    if (!document.empty()) {
-      print_document(program, document);
+    if (describes) {
+      describe_program(program);
       return result;
     }
     if (program.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
@@ -364,15 +366,9 @@ CommandLine parse_command_line(int argument_count, const char* const* arguments,
     check(dependences);
     check_outputs(result.detect, false);
     check_outputs(result.simulate, true);
-    result.command = detect->parsed()        ? CommandLine::Command::detect
-                     : simulate->parsed()    ? CommandLine::Command::simulate
-                     : view->parsed()        ? CommandLine::Command::view
-                     : render->parsed()      ? CommandLine::Command::render
-                     : info->parsed()        ? CommandLine::Command::info
-                     : query->parsed()       ? CommandLine::Command::query
-                     : ccd_queries->parsed() ? CommandLine::Command::ccd_queries
-                     : experiment->parsed()  ? CommandLine::Command::experiment
-                                             : CommandLine::Command::diff;
+    const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
+    const auto given = std::ranges::find_if(commands, [](const CLI::App* app) { return app->parsed(); });
+    result.command = static_cast<CommandLine::Command>(given - commands.begin());
   } catch (const CLI::Success& success) {  // help and version
     result.exit_status = program.exit(success);
   } catch (const CLI::ParseError& error) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -9,7 +10,6 @@
 #include <vector>
 
 #include "inputs/reading.hpp"
-#include "options/json_content.hpp"
 #include "options/option_needs.hpp"
 #include "query/query_file.hpp"
 #include "session/overrides.hpp"
@@ -49,6 +49,19 @@ struct MethodOptions {
 struct RunLimits {
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
   std::optional<double> seconds{};  ///< of wall-clock time, without reading the input
+};
+
+/// The numbers of two objects whose descent in the narrow phase is reported (Figure 4 of the paper).
+using ObjectNumbers = std::array<std::uint32_t, 2>;
+
+/// Optional parts of the JSON; `contact_details` also of the CSV.
+struct JsonContent {
+  /// Options, and the times and counts of each frame: the parts that may differ between two runs with the
+  /// same results.
+  bool stats = true;
+  bool contact_details = false;               ///< points, normals and barycentric coordinates of each contact
+  bool faces = false;                         ///< the triangles of each object
+  std::optional<ObjectNumbers> node_pairs{};  ///< the objects whose colliding nodes are written
 };
 
 /// The options of all commands that find and report contacts.

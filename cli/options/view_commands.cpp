@@ -1,4 +1,4 @@
-#include "options/view_commands.hpp"
+#include "options/option_groups.hpp"
 
 #include <fmt/core.h>
 
@@ -10,7 +10,6 @@
 #include <type_traits>
 
 #include "options/help_footers.hpp"
-#include "options/option_groups.hpp"
 #include "session/pins/pin_values.hpp"
 #include "session/program/attach_descriptions.hpp"
 #include "supple/simulation_descriptions.hpp"
@@ -110,66 +109,60 @@ CLI::Option* add_plot(CLI::App& app, RenderOptions& options) {
 }
 
 void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dependences) {
-  const auto group = [](CLI::Option* option) { return option->group("Pictures"); };
+  const Heading add{"Pictures", dependences};
   const auto is_png = [&options] { return !options.is_svg; };
   const auto of_scene = [&](CLI::Option* option) {
-    dependences.push_back({option, [&options] { return options.plot.empty(); },
-                           "a picture of the scene, which --plot replaces"});
+    return add(
+        option, [&options] { return options.plot.empty(); }, "a picture of the scene, which --plot replaces");
   };
-  group(app.add_option_function<std::string>(
-               "-o,--output",
-               [&options](const std::string& name) {
-                 options.output = name;
-                 options.is_svg = name.ends_with(".svg");
-                 if (!options.is_svg && !name.ends_with(".png"))
-                   throw CLI::ValidationError("--output", name + " ends neither in .png nor in .svg");
-               },
-               "PNG files, or SVG files of lines: outlines, wireframes, contact segments and points. %04d "
-               "stands for the number of the frame")
-            ->type_name("FILE")
-            ->required());
-  group(add_view_file(app, options));
-  group(app.add_option_function<std::string>(
-               "--frames", [&options](const std::string& given) { options.frames = parse_frames(given); },
-               "Frames of a recording, or steps of a simulation, each STEP-th (default: the one of the view "
-               "file, or 0; with --plot, all frames of a recording)")
-            ->type_name("A-B:STEP"));
-  group(app.add_option_function<std::string>(
-               "--size", [&options](const std::string& given) { options.size = parse_size(given); },
-               "Width and height in pixels, or in millimetres, as 160x120mm (default: 1600x1200)")
-            ->type_name("WxH|WxHmm"));
-  group(add_real(
-      app, "--dpi", ValueRange::from(10, 2400), "", [&options](double dpi) { options.dpi = dpi; },
-      "Pixels per inch: of sizes in millimetres, and the scale of texts and marks (default: 200)"));
-  group(add_plot(app, options));
-  of_scene(group(add_word(app, "--background", {"white", "transparent", "theme"}, options.background,
-                          "What is behind the objects; theme is that of the page, with its floor and axes")));
-  dependences.push_back({group(add_word(app, "--theme", {"light", "dark"}, options.theme,
-                                        "Colours of the background and of texts on it")),
-                         [&options] { return options.background != "white"; },
-                         "--background theme or transparent"});
-  of_scene(group(app.add_flag("--legend", options.legend,
-                              "Draw the names of the visible objects with their colours, but not of those "
-                              "that a field covers")));
-  of_scene(
-      group(app.add_flag("--colour-bar", options.colour_bar,
-                         "Draw the colours of the field that the view file chooses, with their values")));
-  of_scene(group(
-      app.add_flag("--scale-bar", options.scale_bar,
-                   "Draw a bar of a round length. It holds everywhere in an orthographic view, and at the "
-                   "target of the camera in perspective, which the picture then says")));
-  group(
-      app.add_option("--browser", options.browser,
+  add(app.add_option_function<std::string>(
+             "-o,--output",
+             [&options](const std::string& name) {
+               options.output = name;
+               options.is_svg = name.ends_with(".svg");
+               if (!options.is_svg && !name.ends_with(".png"))
+                 throw CLI::ValidationError("--output", name + " ends neither in .png nor in .svg");
+             },
+             "PNG files, or SVG files of lines: outlines, wireframes, contact segments and points. %04d "
+             "stands for the number of the frame")
+          ->type_name("FILE")
+          ->required());
+  add(add_view_file(app, options));
+  add(app.add_option_function<std::string>(
+             "--frames", [&options](const std::string& given) { options.frames = parse_frames(given); },
+             "Frames of a recording, or steps of a simulation, each STEP-th (default: the one of the view "
+             "file, or 0; with --plot, all frames of a recording)")
+          ->type_name("A-B:STEP"));
+  add(app.add_option_function<std::string>(
+             "--size", [&options](const std::string& given) { options.size = parse_size(given); },
+             "Width and height in pixels, or in millimetres, as 160x120mm (default: 1600x1200)")
+          ->type_name("WxH|WxHmm"));
+  add(add_real(app, "--dpi", ValueRange::from(10, 2400), "", options.dpi,
+               "Pixels per inch: of sizes in millimetres, and the scale of texts and marks (default: 200)"));
+  add(add_plot(app, options));
+  of_scene(add_word(app, "--background", {"white", "transparent", "theme"}, options.background,
+                    "What is behind the objects; theme is that of the page, with its floor and axes"));
+  add(
+      add_word(app, "--theme", {"light", "dark"}, options.theme,
+               "Colours of the background and of texts on it"),
+      [&options] { return options.background != "white"; }, "--background theme or transparent");
+  of_scene(app.add_flag("--legend", options.legend,
+                        "Draw the names of the visible objects with their colours, but not of those that a "
+                        "field covers"));
+  of_scene(app.add_flag("--colour-bar", options.colour_bar,
+                        "Draw the colours of the field that the view file chooses, with their values"));
+  of_scene(app.add_flag("--scale-bar", options.scale_bar,
+                        "Draw a bar of a round length. It holds everywhere in an orthographic view, and at "
+                        "the target of the camera in perspective, which the picture then says"));
+  add(app.add_option("--browser", options.browser,
                      "Chromium that draws the pictures (default: the variable SUPPLE_CHROMIUM, or the first "
                      "one in PATH)")
           ->type_name("PATH"));
-  dependences.push_back(
-      {group(app.add_flag("--gpu", options.uses_graphics_card,
-                          "Draw on the graphics card; otherwise the browser draws in software, which gives "
-                          "the same pictures on every machine")),
-       is_png, "PNG files"});
-  of_scene(app.get_option("--gpu"));
-  group(app.add_flag("--quiet", options.quiet, "Print no progress and no summary"));
+  of_scene(add(app.add_flag("--gpu", options.uses_graphics_card,
+                            "Draw on the graphics card; otherwise the browser draws in software, which gives "
+                            "the same pictures on every machine"),
+               is_png, "PNG files"));
+  add(app.add_flag("--quiet", options.quiet, "Print no progress and no summary"));
 }
 
 }  // namespace
@@ -188,7 +181,7 @@ void add_scene_overrides(CLI::App& app, std::optional<std::uint64_t>& seed,
   });
 }
 
-CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& dependences) {
+void add_view(CLI::App& program, ViewOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand("view",
                                          "Show moving objects in a browser with their contacts and the "
                                          "stages that find them; objects can be pulled");
@@ -200,76 +193,59 @@ CLI::App* add_view(CLI::App& program, ViewOptions& options, Dependences& depende
   add_detection_options(*app, options, dependences, true);
   add_fused_refit(*app, options, dependences);
 
-  const auto group = [](CLI::Option* option) { return option->group("Page"); };
-  const auto is_served = [&] { return options.page_file.empty(); };
-  const char* const no_export = "a page that is served, not written by --export";
-  dependences.push_back({group(add_whole(
-                             *app, "--port", ValueRange::from(0, 65535),
-                             [&](std::uint64_t port) { options.port = static_cast<std::uint16_t>(port); },
-                             "Port of the server; 0 means any free port (default: 0)")),
-                         is_served, no_export});
-  dependences.push_back(
-      {group(app->add_option(
-                    "--host", options.address,
-                    "IP address of the server. With an address other than 127.0.0.1, people on other "
-                    "machines who know the full address can see and control the page (default: 127.0.0.1)")
-                 ->type_name("ADDRESS")),
-       is_served, no_export});
-  dependences.push_back(
-      {group(app->add_option(
-                    "--token-file", options.token_file,
-                    "File with the secret part of the address, made when it does not exist: with --port, the "
-                    "address stays the same, and an open page connects again after a restart (default: a "
-                    "new secret in each run)")
-                 ->type_name("FILE")),
-       is_served, no_export});
-  dependences.push_back({group(app->add_flag("--spectators", options.has_spectators, viewer::spectators_doc)),
-                         is_served, no_export});
-  dependences.push_back({group(app->add_flag_callback(
-                             "--no-open", [&] { options.open_browser = false; },
-                             "Print the address without opening a browser")),
-                         is_served, no_export});
-  dependences.push_back(
-      {group(add_whole(
-           *app, "--max-memory", ValueRange::from(0, 1'000'000'000),
-           [&](std::uint64_t megabytes) { options.budget.bytes = 1e6 * static_cast<double>(megabytes); },
-           "Memory in MB that commands of the page may add to that of the scene as opened, as estimated "
-           "for its objects, vertices and triangles (default: 2000)")),
-       is_served, no_export});
-  dependences.push_back(
-      {group(add_whole(
-           *app, "--history", ValueRange::from(0, 1'000'000'000),
-           [&](std::uint64_t megabytes) {
-             options.budget.history_bytes = 1e6 * static_cast<double>(megabytes);
-           },
-           "Memory in MB for the positions of the last steps of a simulation, which the page can "
-           "go back to; with 0 it keeps none, and objects have no speeds (default: 500)")),
-       is_served, no_export});
-  dependences.push_back({group(app->add_flag("--follow", options.follow,
-                                             "Show the frames of a recording that is still being written as "
-                                             "they are saved")),
-                         is_served, no_export});
-  dependences.push_back({group(app->add_option("--compare", options.compared,
-                                               "Show a second recording with the first, frame by frame, and "
-                                               "where the two differ first")
-                                   ->type_name("RUN.h5")),
-                         [&] { return options.page_file.empty() && !options.follow; },
-                         "a page that is served, without --follow"});
-  dependences.push_back(
-      {group(add_real(
-           *app, "--tolerance", ValueRange::from(0), "length",
-           [&](double tolerance) { options.tolerance = tolerance; },
-           "Largest difference of two coordinates that --compare takes as equal (default: 0)")),
-       [&] { return !options.compared.empty(); }, "--compare"});
-  add_view_file(*app, options)->group("Page");
-  group(app->add_option("--export", options.page_file,
-                        "Write one HTML file instead of starting a server: any browser can show it, and the "
-                        "detection runs in the page")
-            ->type_name("PAGE.html"));
-  return app;
+  const Heading add{"Page", dependences};
+  const auto served = [&](CLI::Option* option) {
+    add(
+        option, [&] { return options.page_file.empty(); }, "a page that is served, not written by --export");
+  };
+  const auto add_megabytes = [&](const char* name, double& bytes, const char* description) {
+    const auto set = [&bytes](std::uint64_t megabytes) { bytes = 1e6 * static_cast<double>(megabytes); };
+    served(add_whole(*app, name, ValueRange::from(0, 1'000'000'000), set, description));
+  };
+  served(add_whole(
+      *app, "--port", ValueRange::from(0, 65535),
+      [&](std::uint64_t port) { options.port = static_cast<std::uint16_t>(port); },
+      "Port of the server; 0 means any free port (default: 0)"));
+  served(app->add_option("--host", options.address,
+                         "IP address of the server. With an address other than 127.0.0.1, people on other "
+                         "machines who know the full address can see and control the page (default: "
+                         "127.0.0.1)")
+             ->type_name("ADDRESS"));
+  served(app->add_option("--token-file", options.token_file,
+                         "File with the secret part of the address, made when it does not exist: with "
+                         "--port, the address stays the same, and an open page connects again after a "
+                         "restart (default: a new secret in each run)")
+             ->type_name("FILE"));
+  served(app->add_flag("--spectators", options.has_spectators, viewer::spectators_doc));
+  served(app->add_flag_callback(
+      "--no-open", [&] { options.open_browser = false; }, "Print the address without opening a browser"));
+  add_megabytes("--max-memory", options.budget.bytes,
+                "Memory in MB that commands of the page may add to that of the scene as opened, as estimated "
+                "for its objects, vertices and triangles (default: 2000)");
+  add_megabytes("--history", options.budget.history_bytes,
+                "Memory in MB for the positions of the last steps of a simulation, which the page can go "
+                "back to; with 0 it keeps none, and objects have no speeds (default: 500)");
+  served(app->add_flag("--follow", options.follow,
+                       "Show the frames of a recording that is still being written as they are saved"));
+  add(
+      app->add_option("--compare", options.compared,
+                      "Show a second recording with the first, frame by frame, and where the two differ "
+                      "first")
+          ->type_name("RUN.h5"),
+      [&] { return options.page_file.empty() && !options.follow; },
+      "a page that is served, without --follow");
+  add(
+      add_real(*app, "--tolerance", ValueRange::from(0), "length", options.tolerance,
+               "Largest difference of two coordinates that --compare takes as equal (default: 0)"),
+      [&] { return !options.compared.empty(); }, "--compare");
+  add(add_view_file(*app, options));
+  add(app->add_option("--export", options.page_file,
+                      "Write one HTML file instead of starting a server: any browser can show it, and the "
+                      "detection runs in the page")
+          ->type_name("PAGE.html"));
 }
 
-CLI::App* add_render(CLI::App& program, RenderOptions& options, Dependences& dependences) {
+void add_render(CLI::App& program, RenderOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand(
       "render", "Draw frames of a scene or a recording as PNG or SVG files, without a window");
   app->footer(render_footer);
@@ -278,7 +254,6 @@ CLI::App* add_render(CLI::App& program, RenderOptions& options, Dependences& dep
   add_detection_options(*app, options, dependences, true);
   add_fused_refit(*app, options, dependences);
   add_picture_options(*app, options, dependences);
-  return app;
 }
 
 }  // namespace supple::cli

@@ -1,4 +1,4 @@
-#include "query/point_file.hpp"
+#include "query/query_file.hpp"
 
 #include <fmt/core.h>
 
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/input_stream.hpp"
+#include "base/files.hpp"
 #include "base/text.hpp"
 #include "supple/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "query/query.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -8,27 +8,26 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "base/json_writer.hpp"
-#include "base/missing_threads.hpp"
-#include "base/output_names.hpp"
 #include "base/progress.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
-#include "inputs/parts.hpp"
-#include "query/point_file.hpp"
+#include "query/query_file.hpp"
 #include "reports/result_json.hpp"
 #include "supple/error.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"
 #include "supple/verify.hpp"
-#include "supple/version.hpp"
 
 namespace supple::cli {
 namespace {
@@ -278,41 +277,25 @@ void Run::write_result(JsonWriter& json, std::size_t i) const {
 
 void Run::write_json(bool is_truncated) const {
   JsonWriter json(options_.json);
-  json.begin_object();
-  json.member("supple", std::string(SUPPLE_VERSION));
   json.member("query", word_of(options_.kind));
-  json.key("objects");
-  json.begin_array();
-  for (const ObjectId object : scene_.objects()) {
-    json.begin_object();
+  json.objects("objects", scene_.objects(), [&](ObjectId object) {
     json.member("name", scene_.options(object).name);
     json.member("vertices", std::uint64_t{scene_.vertex_count(object)});
     json.member("triangles", std::uint64_t{scene_.triangle_count(object)});
-    json.end_object();
-  }
-  json.end_array();
-  json.key("results");
-  json.begin_array();
-  for (std::size_t i = 0; i < count_; ++i) write_result(json, i);
-  json.end_array();
+  });
+  json.list("results", std::views::iota(std::size_t{0}, count_),
+            [&](std::size_t i) { write_result(json, i); });
   json.member("truncated", is_truncated);
   if (options_.verify) {
-    json.key("verify");
-    json.begin_object();
-    json.member("answers_checked", std::uint64_t{checked_});
-    json.key("differences");
-    json.begin_array();
-    for (const WrongAnswer& wrong : wrong_) {
-      json.begin_object();
-      json.member("query", wrong.query);
-      json.member("found", wrong.found);
-      json.member("expected", wrong.expected);
-      json.end_object();
-    }
-    json.end_array();
-    json.end_object();
+    json.object("verify", [&] {
+      json.member("answers_checked", std::uint64_t{checked_});
+      json.objects("differences", wrong_, [&](const WrongAnswer& wrong) {
+        json.member("query", wrong.query);
+        json.member("found", wrong.found);
+        json.member("expected", wrong.expected);
+      });
+    });
   }
-  json.end_object();
   json.close();
 }
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/input_stream.hpp"
+#include "base/files.hpp"
 #include "base/text.hpp"
 #include "query/rational.hpp"
 #include "supple/error.hpp"

@@ -9,6 +9,7 @@
 
 #include "supple/continuous.hpp"
 #include "supple/description.hpp"
+#include "supple/queries.hpp"
 
 namespace supple::cli {
 
@@ -44,5 +45,11 @@ QueryFile read_query_file(const std::filesystem::path& path, QueryKind kind);
 
 /// Reads the answers from a JSON list of true and false, one per query. Throws `Error` in the same way.
 void read_answers(const std::filesystem::path& path, QueryFile& file);
+
+/// Reads points, three numbers a line, or rays, six numbers a line: the origin and the direction. Blanks,
+/// tabs or commas separate the numbers. Empty lines, and what follows a #, are left out. Throws `Error` when
+/// a line has another number of numbers; the message names the file, the line and the text.
+std::vector<Vec3d> read_points(const std::filesystem::path& path);
+std::vector<Ray> read_rays(const std::filesystem::path& path);
 
 }  // namespace supple::cli

@@ -1,4 +1,4 @@
-#include "render/render.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/interruption.hpp"
-#include "base/missing_threads.hpp"
-#include "base/output_names.hpp"
 #include "base/progress.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"

@@ -1,4 +1,4 @@
-#include "reports/csv_report.hpp"
+#include "reports/report.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "reports/json_report.hpp"
+#include "reports/report.hpp"
 
 #include <fmt/core.h>
 
@@ -11,13 +11,11 @@
 
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
-#include "reports/node_pair_report.hpp"
 #include "reports/result_json.hpp"
 #include "session/messages/described_json.hpp"
 #include "supple/difference_descriptions.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/verify.hpp"
-#include "supple/version.hpp"
 
 namespace supple::cli {
 namespace {
@@ -25,57 +23,27 @@ namespace {
 /// Writes all options except those of the machine.
 template <class Options>
 void write_options(JsonWriter& json, const Options& options) {
-  json.key("options");
-  json.begin_object();
-  for_each_leaf(
-      [&](const auto& field, const auto& value) {
-        if (field.is_of_machine || std::string_view(field.key) == "name") return;
-        json.key(field.key);
-        viewer::write_value(json, field, value);
-      },
-      options);
-  json.end_object();
-}
-
-void write_faces(JsonWriter& json, const std::vector<Triangle>& triangles) {
-  json.key("faces");
-  json.begin_array();
-  for (const Triangle& triangle : triangles) {
-    json.begin_array();
-    for (const std::uint32_t vertex : triangle) json.value(vertex);
-    json.end_array();
-  }
-  json.end_array();
-}
-
-void write_part(JsonWriter& json, const PartOfMesh& part) {
-  json.key("part");
-  json.begin_object();
-  json.member("of", part.mesh);
-  for (const auto& [name, ids] :
-       {std::pair("vertices", &part.vertices), std::pair("triangles", &part.triangles)}) {
-    json.key(name);
-    json.begin_array();
-    for (const std::uint32_t id : *ids) json.value(id);
-    json.end_array();
-  }
-  json.end_object();
+  json.object("options", [&] {
+    for_each_leaf(
+        [&](const auto& field, const auto& value) {
+          if (field.is_of_machine || std::string_view(field.key) == "name") return;
+          json.key(field.key);
+          viewer::write_value(json, field, value);
+        },
+        options);
+  });
 }
 
 void write_object_pairs(JsonWriter& json, const char* name, std::span<const ObjectPair> pairs) {
-  json.key(name);
-  json.begin_array();
-  for (const ObjectPair& pair : pairs) json.pair(pair.a.index, pair.b.index);
-  json.end_array();
+  json.list(name, pairs, [&](const ObjectPair& pair) { json.pair(pair.a.index, pair.b.index); });
 }
 
 /// `stay` is left out: it follows from earlier frames and would repeat every lasting pair in every frame.
 void write_events(JsonWriter& json, const char* name, const PairEvents& events) {
-  json.key(name);
-  json.begin_object();
-  write_object_pairs(json, "begin", events.begin);
-  write_object_pairs(json, "end", events.end);
-  json.end_object();
+  json.object(name, [&] {
+    write_object_pairs(json, "begin", events.begin);
+    write_object_pairs(json, "end", events.end);
+  });
 }
 
 void write_untested(JsonWriter& json, const Frame& frame) {
@@ -97,23 +65,21 @@ void write_untested(JsonWriter& json, const Frame& frame) {
 }
 
 void write_stats(JsonWriter& json, const Frame& frame) {
-  json.key("stats");
-  json.begin_object();
-  if (frame.simulated) json.member("motion_seconds", frame.simulated->motion_seconds);
-  viewer::write_members(json, frame.result.stats);
-  json.end_object();
+  json.object("stats", [&] {
+    if (frame.simulated) json.member("motion_seconds", frame.simulated->motion_seconds);
+    viewer::write_members(json, frame.result.stats);
+  });
 }
 
 /// Two counts of the brute force, and the differences from it.
 template <class Row>
 void write_verify(JsonWriter& json, const char* name, std::pair<const char*, std::uint64_t> checked,
                   std::pair<const char*, std::uint64_t> found, const std::vector<Row>& differences) {
-  json.key(name);
-  json.begin_object();
-  json.member(checked.first, checked.second);
-  json.member(found.first, found.second);
-  write_records(json, "differences", std::span<const Row>(differences));
-  json.end_object();
+  json.object(name, [&] {
+    json.member(checked.first, checked.second);
+    json.member(found.first, found.second);
+    write_records(json, "differences", std::span<const Row>(differences));
+  });
 }
 
 }  // namespace
@@ -121,23 +87,24 @@ void write_verify(JsonWriter& json, const char* name, std::pair<const char*, std
 JsonReport::JsonReport(const std::string& file_name, const Input& input, const MovingObjects& objects,
                        const JsonContent& content)
     : json_(file_name), input_(input), objects_(objects), content_(content) {
-  json_.begin_object();
-  json_.member("supple", std::string(SUPPLE_VERSION));
   if (content_.stats) write_options(json_, input_.simulation.scene);
-  json_.key("objects");
-  json_.begin_array();
-  for (std::size_t i = 0; i < input.objects.size(); ++i) {
-    const TriangleMesh& mesh = input.objects[i].mesh;
-    json_.begin_object();
-    json_.member("name", input.name(ObjectId{static_cast<std::uint32_t>(i)}));
-    json_.member("vertices", std::uint64_t{mesh.positions.size()});
-    json_.member("triangles", std::uint64_t{mesh.triangles.size()});
-    if (content_.stats) write_options(json_, input_.objects[i].options);
-    if (content_.faces) write_faces(json_, input_.objects[i].mesh.triangles);
-    if (input_.objects[i].part) write_part(json_, *input_.objects[i].part);
-    json_.end_object();
-  }
-  json_.end_array();
+  std::uint32_t number = 0;
+  json_.objects("objects", input.objects, [&](const InputObject& object) {
+    json_.member("name", input.name(ObjectId{number++}));
+    json_.member("vertices", std::uint64_t{object.mesh.positions.size()});
+    json_.member("triangles", std::uint64_t{object.mesh.triangles.size()});
+    if (content_.stats) write_options(json_, object.options);
+    if (content_.faces)
+      json_.list("faces", object.mesh.triangles, [&](const Triangle& triangle) {
+        json_.array(triangle, [&](std::uint32_t vertex) { json_.value(vertex); });
+      });
+    if (!object.part) return;
+    json_.object("part", [&] {
+      json_.member("of", object.part->mesh);
+      json_.list("vertices", object.part->vertices);
+      json_.list("triangles", object.part->triangles);
+    });
+  });
   json_.key("frames");
   json_.begin_array();
 }
@@ -192,14 +159,14 @@ void JsonReport::add(const Frame& frame) {
   if (options.manifolds) write_manifolds(json_, result);
   if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
   if (content_.node_pairs) write_node_pairs(json_, objects_.scene(), *content_.node_pairs);
-  json_.key("events");
-  json_.begin_object();
-  write_events(json_, "volumes", result.volume_events);
-  if (options.comparison.colliding_vertices) write_events(json_, "narrow_phase", result.narrow_phase_events);
-  write_events(json_, "contacts", result.contact_events);
-  if (proximity) write_events(json_, "proximity", result.proximity_events);
-  if (penetration) write_events(json_, "penetration", result.penetration_events);
-  json_.end_object();
+  json_.object("events", [&] {
+    write_events(json_, "volumes", result.volume_events);
+    if (options.comparison.colliding_vertices)
+      write_events(json_, "narrow_phase", result.narrow_phase_events);
+    write_events(json_, "contacts", result.contact_events);
+    if (proximity) write_events(json_, "proximity", result.proximity_events);
+    if (penetration) write_events(json_, "penetration", result.penetration_events);
+  });
   write_records(json_, "non_finite", result.non_finite_vertices);
   if (frame.verify) {
     const VerifyReport& report = *frame.verify;
@@ -226,7 +193,6 @@ void JsonReport::add(const Frame& frame) {
 void JsonReport::finish(bool was_ended) {
   json_.end_array();
   json_.member("truncated", was_ended || is_truncated_);
-  json_.end_object();
   json_.close();
 }
 

@@ -1,8 +1,10 @@
-#include "reports/node_pair_report.hpp"
+#include "reports/report.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <ranges>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,16 +36,6 @@ std::string names_of(const NodePairList& list, std::span<const NodePairList::Pai
                         name_of(list.nodes_b[pair.b]));
   if (pairs.size() > most) text += fmt::format(" and {} more", grouped(pairs.size() - most));
   return text;
-}
-
-void write_name(JsonWriter& json, const OctreeCell& node) {
-  json.begin_array();
-  if (node.number)
-    json.value(*node.number);
-  else
-    json.null();
-  json.value(node.level);
-  json.end_array();
 }
 
 }  // namespace
@@ -80,24 +72,21 @@ void print_node_pairs(const Scene& scene, ObjectNumbers objects, std::uint64_t f
 
 void write_node_pairs(JsonWriter& json, const Scene& scene, ObjectNumbers objects) {
   const NodePairList list = node_pairs_of(scene, objects);
-  json.key("node_pairs");
-  json.begin_object();
-  json.member("a", objects[0]);
-  json.member("b", objects[1]);
-  json.key("levels");
-  json.begin_array();
-  for (std::uint32_t level = 0; level < list.level_count(); ++level) {
+  const auto write_node = [&](const OctreeCell* node) {
     json.begin_array();
-    for (const NodePairList::Pair& pair : list.pairs_of(level)) {
-      json.begin_array();
-      write_name(json, list.nodes_a[pair.a]);
-      write_name(json, list.nodes_b[pair.b]);
-      json.end_array();
-    }
+    node->number ? json.value(*node->number) : json.null();
+    json.value(node->level);
     json.end_array();
-  }
-  json.end_array();
-  json.end_object();
+  };
+  const auto write_pair = [&](const NodePairList::Pair& pair) {
+    json.array(std::array{&list.nodes_a[pair.a], &list.nodes_b[pair.b]}, write_node);
+  };
+  json.object("node_pairs", [&] {
+    json.member("a", objects[0]);
+    json.member("b", objects[1]);
+    json.list("levels", std::views::iota(0u, list.level_count()),
+              [&](std::uint32_t level) { json.array(list.pairs_of(level), write_pair); });
+  });
 }
 
 }  // namespace supple::cli

@@ -10,9 +10,8 @@
 #include "base/exit_status.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
-#include "inputs/parts.hpp"
 #include "moving/moving_objects.hpp"
-#include "reports/node_pair_report.hpp"
+#include "reports/report.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/verify.hpp"
 
@@ -25,67 +24,41 @@ std::string describe(const Input& input, const Difference& d) {
                      d.missed ? "intersect and were not reported" : "were reported and do not intersect");
 }
 
-const char* outcome_of(ContinuousDifference::Fault fault) {
-  switch (fault) {
-    case ContinuousDifference::Fault::missed:
-      return "touch and were not reported";
-    case ContinuousDifference::Fault::added:
-      return "were reported and do not touch";
-    case ContinuousDifference::Fault::late:
-      return "were reported with a time after they touch";
-    case ContinuousDifference::Fault::early:
-      break;
-  }
-  return "were reported with a time too long before they touch";
-}
+/// What is different, by fault.
+constexpr std::array outcomes_of_impacts{"touch and were not reported", "were reported and do not touch",
+                                         "were reported with a time after they touch",
+                                         "were reported with a time too long before they touch"};
+constexpr std::array outcomes_of_pairs{"are near and were not reported", "were reported and are not near",
+                                       "were reported with wrong features or an inaccurate distance"};
+constexpr std::array outcomes_of_vertices{
+    "is inside or on the surface of it and was not reported so",
+    "was reported as inside or on the surface of it and is not",
+    "was reported with a triangle that is not the nearest or with an inaccurate depth"};
 
-std::string describe(const Input& input, const ContinuousDifference& d) {
-  const auto [kind_a, kind_b] = feature_kinds(d.kind);
-  const auto numbers = [](const std::array<std::uint32_t, 2>& ids) {
-    return ids[0] == ids[1] ? fmt::format("{}", ids[0]) : fmt::format("{} {}", ids[0], ids[1]);
-  };
-  return fmt::format("{} {} of {} and {} {} of {} {}", word_of(kind_a), numbers(d.element_a),
-                     one_line(input.name(d.object_a)), word_of(kind_b), numbers(d.element_b),
-                     one_line(input.name(d.object_b)), outcome_of(d.fault));
-}
-
-const char* outcome_of(ProximityDifference::Fault fault) {
-  switch (fault) {
-    case ProximityDifference::Fault::missed:
-      return "are near and were not reported";
-    case ProximityDifference::Fault::added:
-      return "were reported and are not near";
-    case ProximityDifference::Fault::inexact:
-      break;
-  }
-  return "were reported with wrong features or an inaccurate distance";
-}
-
-std::string describe(const Input& input, const ProximityDifference& d) {
+std::string describe(const Input& input, const auto& d, std::array<FeatureKind, 2> kinds,
+                     const auto& outcomes) {
   const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
     const std::string numbers =
         kind == FeatureKind::edge ? fmt::format("{} {}", ids[0], ids[1]) : fmt::format("{}", ids[0]);
     return fmt::format("{} {} of {}", word_of(kind), numbers, one_line(input.name(object)));
   };
-  return fmt::format("{} and {} {}", named(d.kind_a, d.element_a, d.object_a),
-                     named(d.kind_b, d.element_b, d.object_b), outcome_of(d.fault));
+  return fmt::format("{} and {} {}", named(kinds[0], d.element_a, d.object_a),
+                     named(kinds[1], d.element_b, d.object_b), outcomes[static_cast<std::size_t>(d.fault)]);
 }
 
-const char* outcome_of(PenetrationDifference::Fault fault) {
-  switch (fault) {
-    case PenetrationDifference::Fault::missed:
-      return "is inside or on the surface of it and was not reported so";
-    case PenetrationDifference::Fault::added:
-      return "was reported as inside or on the surface of it and is not";
-    case PenetrationDifference::Fault::inexact:
-      break;
-  }
-  return "was reported with a triangle that is not the nearest or with an inaccurate depth";
+std::string describe(const Input& input, const ContinuousDifference& d) {
+  const auto [kind_a, kind_b] = feature_kinds(d.kind);
+  return describe(input, d, {kind_a, kind_b}, outcomes_of_impacts);
+}
+
+std::string describe(const Input& input, const ProximityDifference& d) {
+  return describe(input, d, {d.kind_a, d.kind_b}, outcomes_of_pairs);
 }
 
 std::string describe(const Input& input, const PenetrationDifference& d) {
   return fmt::format("for {}: vertex {} of {} {}", one_line(input.name(d.object_b)), d.vertex,
-                     one_line(input.name(d.object_a)), outcome_of(d.fault));
+                     one_line(input.name(d.object_a)),
+                     outcomes_of_vertices[static_cast<std::size_t>(d.fault)]);
 }
 
 void print_difference(const Input& input, std::uint64_t frame, const VerifyReport& report) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -18,21 +20,13 @@ void write_objects(JsonWriter& json, ObjectId a, ObjectId b) {
 
 /// Writes the groups of different objects, or the groups of objects with themselves.
 void write_triangle_pairs(JsonWriter& json, const char* name, const DetectResult& result, bool self) {
-  json.key(name);
-  json.begin_array();
-  for (const ContactGroup& group : result.groups) {
-    if ((group.a == group.b) != self) continue;
-    json.begin_object();
+  const auto is_wanted = [&](const ContactGroup& group) { return (group.a == group.b) == self; };
+  json.objects(name, result.groups | std::views::filter(is_wanted), [&](const ContactGroup& group) {
     json.member("a", group.a.index);
     if (!self) json.member("b", group.b.index);
-    json.key("pairs");
-    json.begin_array();
-    for (const Contact& contact : result.contacts_of(group))
-      json.pair(contact.triangle_a, contact.triangle_b);
-    json.end_array();
-    json.end_object();
-  }
-  json.end_array();
+    json.list("pairs", result.contacts_of(group),
+              [&](const Contact& contact) { json.pair(contact.triangle_a, contact.triangle_b); });
+  });
 }
 
 /// The consecutive rows of a group whose elements have these kinds.
@@ -67,71 +61,54 @@ void write_rows(JsonWriter& json, const RowsOfKind<Row>& of_kind, double Row::*n
     json.value(element[0]);
     if (kind == edge) json.value(element[1]);
   };
-  json.key(kind_word(kind_a, kind_b).c_str());
-  json.begin_array();
-  for (const Row& row : of_kind.rows) {
+  json.list(kind_word(kind_a, kind_b).c_str(), of_kind.rows, [&](const Row& row) {
     json.begin_array();
     write_ids(row.element_a, kind_a);
     write_ids(row.element_b, kind_b);
     json.value(row.*number);
     json.end_array();
-  }
-  json.end_array();
+  });
 }
 
 /// Writes the rows, counted from 0, of contacts that are only within tolerance.
 void write_uncertain_rows(JsonWriter& json, std::span<const RowsOfKind<ContinuousContact>> all) {
-  json.key("within_tolerance");
-  json.begin_object();
-  for (const auto& [kinds, rows] : all) {
-    json.key(kind_word(kinds[0], kinds[1]).c_str());
-    json.begin_array();
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      if (rows[row].certainty != ImpactCertainty::certain) json.value(std::uint64_t{row});
+  json.object("within_tolerance", [&] {
+    for (const RowsOfKind<ContinuousContact>& of_kind : all) {
+      std::uint64_t row = 0;
+      json.list(kind_word(of_kind.kinds[0], of_kind.kinds[1]).c_str(), of_kind.rows,
+                [&](const auto& contact) {
+                  if (contact.certainty != ImpactCertainty::certain) json.value(row);
+                  ++row;
+                });
     }
-    json.end_array();
-  }
-  json.end_object();
+  });
 }
 
 void write_penetration_groups(JsonWriter& json, const DetectResult& result) {
-  json.key("penetration");
-  json.begin_array();
-  for (const PenetrationGroup& group : result.penetration_groups) {
-    json.begin_object();
+  json.objects("penetration", result.penetration_groups, [&](const PenetrationGroup& group) {
     write_objects(json, group.a, group.b);
-    json.key("vertices");
-    json.begin_array();
-    for (const Penetration& p : result.penetrations_of(group)) {
+    json.list("vertices", result.penetrations_of(group), [&](const Penetration& p) {
       json.begin_array();
       json.value(p.vertex);
       json.value(p.triangle);
       json.value(p.depth);
       json.end_array();
-    }
-    json.end_array();
-    write_ids(json, "on_surface", result.vertices_on_surface_of(group));
-    json.end_object();
-  }
-  json.end_array();
+    });
+    json.list("on_surface", result.vertices_on_surface_of(group));
+  });
 }
 
 void write_containment(JsonWriter& json, std::span<const ContainedPart> parts) {
-  json.key("containment");
-  json.begin_array();
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const bool is_first =
-        i == 0 || parts[i - 1].inner != parts[i].inner || parts[i - 1].outer != parts[i].outer;
-    if (parts[i].is_whole && is_first) json.pair(parts[i].inner.index, parts[i].outer.index);
-  }
-  json.end_array();
+  const ContainedPart* before = nullptr;
+  json.list("containment", parts, [&](const ContainedPart& part) {
+    const bool is_first = !before || before->inner != part.inner || before->outer != part.outer;
+    if (part.is_whole && is_first) json.pair(part.inner.index, part.outer.index);
+    before = &part;
+  });
 }
 
 void write_curves(JsonWriter& json, const DetectResult& result, bool details) {
-  json.key("curves");
-  json.begin_array();
-  for (const IntersectionCurve& curve : result.curves) {
-    json.begin_object();
+  json.objects("curves", result.curves, [&](const IntersectionCurve& curve) {
     if (details) {
       write_fields(json, curve);
     } else {
@@ -139,22 +116,14 @@ void write_curves(JsonWriter& json, const DetectResult& result, bool details) {
       json.member("kind", word_of(curve.kind));
     }
     json.member("segments", curve.contact_count);
-    if (details) {
-      json.key("pairs");
-      json.begin_array();
-      for (const std::uint32_t i : result.contacts_of(curve))
-        json.pair(result.contacts[i].triangle_a, result.contacts[i].triangle_b);
-      json.end_array();
-      json.key("points");
-      json.begin_array();
-      for (const Vec3d& point : result.points_of(curve)) json.value(point);
-      json.end_array();
-      write_ids(json, "enclosed_a", result.enclosed_vertices_of(curve, ContactSide::a));
-      write_ids(json, "enclosed_b", result.enclosed_vertices_of(curve, ContactSide::b));
-    }
-    json.end_object();
-  }
-  json.end_array();
+    if (!details) return;
+    json.list("pairs", result.contacts_of(curve), [&](std::uint32_t i) {
+      json.pair(result.contacts[i].triangle_a, result.contacts[i].triangle_b);
+    });
+    json.list("points", result.points_of(curve));
+    json.list("enclosed_a", result.enclosed_vertices_of(curve, ContactSide::a));
+    json.list("enclosed_b", result.enclosed_vertices_of(curve, ContactSide::b));
+  });
 }
 
 }  // namespace
@@ -164,13 +133,6 @@ void write_element(JsonWriter& json, const std::array<std::uint32_t, 2>& element
     json.pair(element[0], element[1]);
   else
     json.value(element[0]);
-}
-
-void write_ids(JsonWriter& json, const char* name, std::span<const std::uint32_t> ids) {
-  json.key(name);
-  json.begin_array();
-  for (const std::uint32_t id : ids) json.value(id);
-  json.end_array();
 }
 
 void write_members(JsonWriter& json, const RecordInfo& record, const std::byte* row, bool only_exact) {
@@ -209,50 +171,34 @@ void write_intersections(JsonWriter& json, const DetectResult& result, const Det
   write_triangle_pairs(json, "triangle_pairs", result, false);
   write_triangle_pairs(json, "self", result, true);
   if (!content.details) return;
-  json.key("contacts");
-  json.begin_array();
-  for (const Contact& contact : result.contacts) {
-    json.begin_object();
+  json.objects("contacts", result.contacts, [&](const Contact& contact) {
     write_fields(json, contact, !content.points);
     if (content.points) write_records(json, "points", result.points_of(contact));
-    json.end_object();
-  }
-  json.end_array();
+  });
 }
 
 void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool with_certainty) {
   constexpr Kinds order[] = {{vertex, face}, {face, vertex}, {edge, edge},
                              {vertex, edge}, {edge, vertex}, {vertex, vertex}};
-  json.key("continuous");
-  json.begin_array();
-  for (const ContactGroup& group : result.continuous_groups) {
+  json.objects("continuous", result.continuous_groups, [&](const ContactGroup& group) {
     // In a group of an object with itself, the vertex is always the element of a.
     const auto all = by_kinds(result.continuous_contacts_of(group), order, [&](const Kinds& kinds) {
       return kinds == Kinds{edge, edge} || kinds == Kinds{vertex, face} ||
              (kinds == Kinds{face, vertex} && group.a != group.b);
     });
-    json.begin_object();
     write_objects(json, group.a, group.b);
     for (const auto& of_kind : all) write_rows(json, of_kind, &ContinuousContact::toi);
     if (with_certainty) write_uncertain_rows(json, all);
-    json.end_object();
-  }
-  json.end_array();
+  });
   const auto first = std::ranges::min_element(result.continuous_contacts, {}, &ContinuousContact::toi);
-  json.key("earliest");
-  if (first == result.continuous_contacts.end())
-    json.null();
-  else
-    json.value(first->toi);
+  const bool is_any = first != result.continuous_contacts.end();
+  json.member("earliest", is_any ? std::optional(first->toi) : std::nullopt);
 }
 
 void write_proximity_groups(JsonWriter& json, const DetectResult& result, ProximityListing listing) {
   constexpr Kinds order[] = {{vertex, vertex}, {vertex, edge}, {vertex, face}, {edge, vertex},
                              {edge, edge},     {edge, face},   {face, vertex}, {face, edge}};
-  json.key("proximity");
-  json.begin_array();
-  for (const ContactGroup& group : result.proximity_groups) {
-    json.begin_object();
+  json.objects("proximity", result.proximity_groups, [&](const ContactGroup& group) {
     write_objects(json, group.a, group.b);
     const auto is_usual = [&](const Kinds& kinds) {
       if (kinds == Kinds{edge, face} || kinds == Kinds{face, edge}) return false;
@@ -261,9 +207,7 @@ void write_proximity_groups(JsonWriter& json, const DetectResult& result, Proxim
     };
     for (const auto& of_kind : by_kinds(result.proximity_pairs_of(group), order, is_usual))
       write_rows(json, of_kind, &ProximityPair::distance);
-    json.end_object();
-  }
-  json.end_array();
+  });
 }
 
 void write_penetration(JsonWriter& json, const DetectResult& result, bool details) {
@@ -275,30 +219,21 @@ void write_penetration(JsonWriter& json, const DetectResult& result, bool detail
 }
 
 void write_manifolds(JsonWriter& json, const DetectResult& result) {
-  json.key("manifolds");
-  json.begin_array();
-  for (const Manifold& manifold : result.manifolds) {
-    json.begin_object();
+  json.objects("manifolds", result.manifolds, [&](const Manifold& manifold) {
     write_fields(json, manifold);
     write_records(json, "points", result.points_of(manifold));
-    json.end_object();
-  }
-  json.end_array();
+  });
   write_records(json, "ended_manifolds", result.ended_manifolds);
 }
 
 void write_colliding_vertices(JsonWriter& json, const DetectResult& result) {
-  json.key("colliding_vertices");
-  json.begin_array();
-  for (const CollidingVertices& group : result.colliding_vertex_groups) {
-    json.begin_object();
+  json.objects("colliding_vertices", result.colliding_vertex_groups, [&](const CollidingVertices& group) {
     write_objects(json, group.a, group.b);
-    write_ids(json, "vertices_a", result.colliding_vertices.subspan(group.first_vertex, group.count_a));
-    write_ids(json, "vertices_b",
-              result.colliding_vertices.subspan(group.first_vertex + group.count_a, group.count_b));
-    json.end_object();
-  }
-  json.end_array();
+    const auto vertices =
+        result.colliding_vertices.subspan(group.first_vertex, group.count_a + group.count_b);
+    json.list("vertices_a", vertices.first(group.count_a));
+    json.list("vertices_b", vertices.last(group.count_b));
+  });
 }
 
 void write_distance(JsonWriter& json, const ProximityPair& pair) {

@@ -38,7 +38,6 @@ void write_distance(JsonWriter& json, const ProximityPair& pair);
 
 /// The id of a vertex or a face, or `[3, 5]` for an edge.
 void write_element(JsonWriter& json, const std::array<std::uint32_t, 2>& element, FeatureKind kind);
-void write_ids(JsonWriter& json, const char* name, std::span<const std::uint32_t> ids);
 
 /// The key of a member in JSON and CSV: objects are `a` and `b`.
 constexpr const char* short_key(const char* key) {
@@ -62,14 +61,7 @@ void write_fields(JsonWriter& json, const Row& row, bool only_exact = false) {
 
 template <Described Row>
 void write_records(JsonWriter& json, const char* name, std::span<const Row> rows) {
-  json.key(name);
-  json.begin_array();
-  for (const Row& row : rows) {
-    json.begin_object();
-    write_fields(json, row);
-    json.end_object();
-  }
-  json.end_array();
+  json.objects(name, rows, [&](const Row& row) { write_fields(json, row); });
 }
 
 }  // namespace supple::cli

@@ -1,4 +1,4 @@
-#include "reports/tested_kinds.hpp"
+#include "reports/reports.hpp"
 
 #include <fmt/core.h>
 
@@ -20,6 +20,20 @@ constexpr NamedKind kinds[] = {{ContactKinds::intersection, "intersections"},
                                {ContactKinds::continuous, "continuous contacts"},
                                {ContactKinds::proximity, "proximity"},
                                {ContactKinds::penetration, "penetration"}};
+
+/// By `NothingToTest`.
+constexpr const char* reasons_in_words[] = {
+    "there is no object",
+    "no object has a triangle; give surfaces of triangles, not clouds of points",
+    "every triangle has a vertex that is not finite; correct the coordinates",
+    "no object is solid; --solid makes all objects solid, solid = true one object of a scene file",
+    "nothing moves; give frames of one object with --sequence, or a scene file with motion",
+    "all margins are 0, which finds only what touches; give --margin",
+    "",  // see `advice_for_one_object`
+    "all objects are static; let one of them move",
+    "groups and masks exclude all pairs; change group or mask of an object",
+    "a filter excludes all pairs",
+};
 
 bool reads_lines(ContactKinds kind) {
   return kind == ContactKinds::continuous || kind == ContactKinds::proximity;
@@ -93,34 +107,12 @@ std::vector<std::string> TestedKinds::faults() const {
 }
 
 std::string TestedKinds::reason_in_words(ContactKinds kind, NothingToTest reason) const {
-  switch (reason) {
-    case NothingToTest::no_objects:
-      return "there is no object";
-    case NothingToTest::no_elements: {
-      if (leaves_out_lines(kind))
-        return "no object has a triangle; lines and points take part in --contacts continuous and proximity";
-      return "no object has a triangle; give surfaces of triangles, not clouds of points";
-    }
-    case NothingToTest::not_finite:
-      return "every triangle has a vertex that is not finite; correct the coordinates";
-    case NothingToTest::no_solid:
-      return "no object is solid; --solid makes all objects solid, solid = true one object of a scene file";
-    case NothingToTest::no_motion:
-      return are_frames_
-                 ? "nothing moves; if the meshes are frames of one object, give --sequence"
-                 : "nothing moves; give frames of one object with --sequence, or a scene file with motion";
-    case NothingToTest::no_margin:
-      return "all margins are 0, which finds only what touches; give --margin";
-    case NothingToTest::one_object:
-      return advice_for_one_object(kind);
-    case NothingToTest::all_static:
-      return "all objects are static; let one of them move";
-    case NothingToTest::groups:
-      return "groups and masks exclude all pairs; change group or mask of an object";
-    case NothingToTest::filter:
-      break;
-  }
-  return "a filter excludes all pairs";
+  if (reason == NothingToTest::no_elements && leaves_out_lines(kind))
+    return "no object has a triangle; lines and points take part in --contacts continuous and proximity";
+  if (reason == NothingToTest::no_motion && are_frames_)
+    return "nothing moves; if the meshes are frames of one object, give --sequence";
+  if (reason == NothingToTest::one_object) return advice_for_one_object(kind);
+  return reasons_in_words[static_cast<std::size_t>(reason)];
 }
 
 /// Whether an object has lines or points, which this kind does not read.

@@ -1,9 +1,10 @@
-#include "reports/text_report.hpp"
+#include "reports/reports.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -12,7 +13,9 @@
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
+#include "reports/result_json.hpp"
 #include "supple/result_descriptions.hpp"
+#include "supple/topology.hpp"
 #include "supple/verify.hpp"
 
 namespace supple::cli {
@@ -26,7 +29,77 @@ void add_to(StepStats& sum, const StepStats& stats) {
       sum, stats);
 }
 
+/// The vertices of an element of the contact on side 'a' or 'b'.
+template <class Contact>
+std::vector<std::uint32_t> vertices_of(const TriangleMesh& mesh, const Contact& contact, char side) {
+  const auto corners = [&](std::uint32_t triangle) {
+    const Triangle& t = mesh.triangles[triangle];
+    return std::vector<std::uint32_t>(t.begin(), t.end());
+  };
+  if constexpr (std::is_same_v<Contact, supple::Contact>) {
+    return corners(side == 'a' ? contact.triangle_a : contact.triangle_b);
+  } else {
+    const auto& element = side == 'a' ? contact.element_a : contact.element_b;
+    const FeatureKind kind = kind_of_element(contact, side);
+    if (kind == FeatureKind::face) return corners(element[0]);
+    return {element.begin(), element.begin() + (kind == FeatureKind::edge ? 2 : 1)};
+  }
+}
+
 }  // namespace
+
+/// Whether the two elements have vertices at equal positions.
+template <class Contact>
+bool SelfContacts::is_at_seam(const Contact& contact) const {
+  const TriangleMesh& mesh = input_.objects[contact.object_a.index].mesh;
+  const std::span<const Vec3d> positions = objects_.positions(contact.object_a);
+  const std::vector<std::uint32_t> a = vertices_of(mesh, contact, 'a'), b = vertices_of(mesh, contact, 'b');
+  return std::ranges::any_of(a, [&](std::uint32_t v) {
+    return std::ranges::any_of(b, [&](std::uint32_t w) { return positions[v] == positions[w]; });
+  });
+}
+
+void SelfContacts::add(const DetectResult& result) {
+  const auto add_all = [&](const auto& contacts) {
+    for (const auto& contact : contacts) {
+      if (contact.object_a != contact.object_b || input_.objects[contact.object_a.index].options.weld)
+        continue;
+      Counts& counts = counts_[contact.object_a];
+      ++counts.all;
+      if (is_at_seam(contact)) ++counts.at_seams;
+    }
+  };
+  add_all(result.contacts);
+  add_all(result.continuous_contacts);
+  add_all(result.proximity_pairs);
+}
+
+std::vector<std::string> SelfContacts::notes() const {
+  std::vector<std::string> notes;
+  for (const auto& [object, counts] : counts_) {
+    if (2 * counts.at_seams <= counts.all) continue;
+    notes.push_back(
+        fmt::format("{} of {} of {} with itself {} between vertices at equal positions, as at the seams of "
+                    "an export; --weld makes such vertices one",
+                    grouped(counts.at_seams), counted(counts.all, "contact"), name_of(input_, object),
+                    counts.at_seams == 1 ? "is" : "are"));
+  }
+  if (const std::string note = note_of_neighbours(); !note.empty()) notes.push_back(note);
+  return notes;
+}
+
+std::string SelfContacts::note_of_neighbours() const {
+  if (!contains(input_.simulation.scene.contacts, ContactKinds::intersection)) return "";
+  std::uint64_t pairs = 0;
+  for (const InputObject& object : input_.objects) {
+    if (!object.options.self_collision || object.options.neighbours == Neighbours::exact) continue;
+    pairs +=
+        count_neighbour_pairs(object.options.weld ? welded(object.mesh).triangles : object.mesh.triangles);
+  }
+  if (pairs == 0) return "";
+  return fmt::format("{} that share a vertex {} not tested; --neighbours exact tests them",
+                     counted(pairs, "pair of triangles", "pairs of triangles"), pairs == 1 ? "was" : "were");
+}
 
 TextReport::TextReport(std::string noun, const Input& input, const MovingObjects& objects)
     : noun_(std::move(noun)), input_(input), objects_(objects), self_contacts_(input, objects) {
@@ -39,7 +112,7 @@ void TextReport::add(const Frame& frame) {
   for (const ContactGroup& group : result.groups) {
     PairSummary& pair = pairs_[{group.a, group.b}];
     ++pair.frames;
-    pair.triangle_pairs += group.contact_count;
+    pair.count += group.contact_count;
     if (group.contact_count <= pair.most) continue;
     pair.most = group.contact_count;
     pair.frame_of_most = frame.number;
@@ -48,8 +121,8 @@ void TextReport::add(const Frame& frame) {
   for (const ContactGroup& group : result.proximity_groups) {
     NearSummary& near = near_[{group.a, group.b}];
     ++near.frames;
-    if (near.pairs == 0) near.smallest = result.proximity_pairs_of(group).front().distance;
-    near.pairs += group.contact_count;
+    if (near.count == 0) near.smallest = result.proximity_pairs_of(group).front().distance;
+    near.count += group.contact_count;
     for (const ProximityPair& pair : result.proximity_pairs_of(group))
       near.smallest = std::min(near.smallest, pair.distance);
   }
@@ -57,7 +130,7 @@ void TextReport::add(const Frame& frame) {
     if (group.penetration_count == 0) continue;
     InsideSummary& inside = inside_[{group.a, group.b}];
     ++inside.frames;
-    inside.vertices += group.penetration_count;
+    inside.count += group.penetration_count;
     for (const Penetration& p : result.penetrations_of(group)) {
       if (p.depth <= inside.deepest) continue;
       inside.deepest = p.depth;
@@ -75,7 +148,7 @@ void TextReport::add(const Frame& frame) {
        : curve.kind == CurveKind::open ? open_curves_
                                        : branched_curves_);
   }
-  impacts_.add(frame);
+  add_impacts(frame);
   self_contacts_.add(result);
   add_to(sum_, result.stats);
   if (frame.simulated) {
@@ -94,6 +167,29 @@ void TextReport::add(const Frame& frame) {
   checked_ += verify.triangle_pairs_checked + verify.element_pairs_checked + verify.proximity_pairs_checked +
               verify.vertex_triangle_pairs_checked;
   differences_ += verify.difference_count();
+}
+
+void TextReport::add_impacts(const Frame& frame) {
+  const DetectResult& result = frame.result;
+  if (result.continuous_contacts.empty()) return;
+  const auto count_edges = [](std::span<const ContinuousContact> contacts) {
+    return static_cast<std::uint64_t>(
+        std::ranges::count(contacts, ElementPairKind::edge_edge, &ContinuousContact::kind));
+  };
+  for (const ContactGroup& group : result.continuous_groups) {
+    ImpactSummary& pair = impacts_[{group.a, group.b}];
+    ++pair.frames;
+    pair.count += group.contact_count;
+    pair.edge_edge += count_edges(result.continuous_contacts_of(group));
+  }
+  ++steps_with_impacts_;
+  const std::uint64_t edges = count_edges(result.continuous_contacts);
+  ImpactStep step{frame.number, result.continuous_contacts.size() - edges, edges};
+  for (const ContinuousContact& contact : result.continuous_contacts) {
+    step.earliest = std::min(step.earliest, contact.toi);
+    if (contact.certainty == ImpactCertainty::within_tolerance) ++impacts_within_tolerance_;
+  }
+  if (impact_steps_.size() < most_rows) impact_steps_.push_back(step);
 }
 
 void TextReport::print(const TestedKinds& tested) const {
@@ -117,7 +213,7 @@ void TextReport::print_contacts(const TestedKinds& tested) const {
     if (contains(input_.simulation.scene.contacts, ContactKinds::penetration)) print_curves();
   }
   if (tested.was_tested(ContactKinds::penetration)) print_penetrations();
-  if (tested.was_tested(ContactKinds::continuous)) impacts_.print(input_);
+  if (tested.was_tested(ContactKinds::continuous)) print_impacts();
   if (tested.was_tested(ContactKinds::proximity)) print_near();
   for (std::vector<std::string> lines : {tested.faults(), self_contacts_.notes()}) {
     for (std::string& line : lines) {
@@ -127,26 +223,30 @@ void TextReport::print_contacts(const TestedKinds& tested) const {
   }
 }
 
-void TextReport::print_near() const {
-  if (near_.empty()) {
-    fmt::print("Nothing is within the margins.\n\n");
-    return;
-  }
-  std::vector<std::pair<ObjectPair, NearSummary>> rows(near_.begin(), near_.end());
+template <class Summary, class Cells>
+void TextReport::print_table(const Summaries<Summary>& pairs, const char* option, const Cells& cells) const {
+  std::vector<std::pair<ObjectPair, Summary>> rows(pairs.begin(), pairs.end());
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
-    return x.second.pairs != y.second.pairs ? x.second.pairs > y.second.pairs : x.first < y.first;
+    return x.second.count != y.second.count ? x.second.count > y.second.count : x.first < y.first;
   });
+  for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
+    const auto& [pair, summary] = rows[i];
+    fmt::print("{:<20} {:<20} {:>8} {}\n", name_of(input_, pair.a),
+               pair.a == pair.b ? "itself" : name_of(input_, pair.b), grouped(summary.frames),
+               cells(summary));
+  }
+  if (rows.size() > most_rows)
+    fmt::print("and {} with fewer; {} lists all\n", counted(rows.size() - most_rows, "pair"), option);
+}
+
+void TextReport::print_near() const {
+  if (near_.empty()) return fmt::print("Nothing is within the margins.\n\n");
   const bool lists_features = input_.simulation.scene.proximity_listing == ProximityListing::features;
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24}\n", "object", "is near", "frames",
              lists_features ? "feature pairs" : "element pairs", "smallest distance");
-  for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
-    const auto& [pair, near] = rows[i];
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24}\n", name_of(input_, pair.a),
-               pair.a == pair.b ? "itself" : name_of(input_, pair.b), grouped(near.frames),
-               grouped(near.pairs), near.smallest);
-  }
-  if (rows.size() > most_rows)
-    fmt::print("and {} with fewer; --csv lists all\n", counted(rows.size() - most_rows, "pair"));
+  print_table(near_, "--csv", [](const NearSummary& near) {
+    return fmt::format("{:>16} {:>24}", grouped(near.count), near.smallest);
+  });
   fmt::print("\n");
 }
 
@@ -157,56 +257,56 @@ void TextReport::print_curves() const {
 }
 
 void TextReport::print_penetrations() const {
-  if (inside_.empty()) {
-    fmt::print("No vertex is inside a solid object.\n\n");
-    return;
-  }
-  std::vector<std::pair<ObjectPair, InsideSummary>> rows(inside_.begin(), inside_.end());
-  std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
-    return x.second.vertices != y.second.vertices ? x.second.vertices > y.second.vertices : x.first < y.first;
-  });
+  if (inside_.empty()) return fmt::print("No vertex is inside a solid object.\n\n");
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", "object", "is inside", "frames",
              "vertices inside", "largest depth", "in frame", "frames, wholly");
-  for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i) {
-    const auto& [pair, inside] = rows[i];
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>24} {:>12} {:>16}\n", name_of(input_, pair.a),
-               name_of(input_, pair.b), grouped(inside.frames), grouped(inside.vertices), inside.deepest,
-               inside.frame_of_deepest, grouped(inside.frames_contained));
-  }
-  if (rows.size() > most_rows)
-    fmt::print("and {} with fewer; --csv lists all\n", counted(rows.size() - most_rows, "pair"));
-  const auto& [pair, deepest] = *std::ranges::max_element(
-      rows, [](const auto& x, const auto& y) { return x.second.deepest < y.second.deepest; });
-  if (deepest.vertices > 0)
+  print_table(inside_, "--csv", [](const InsideSummary& inside) {
+    return fmt::format("{:>16} {:>24} {:>12} {:>16}", grouped(inside.count), inside.deepest,
+                       inside.frame_of_deepest, grouped(inside.frames_contained));
+  });
+  // Of several, the one with the most vertices.
+  const auto& [pair, deepest] = *std::ranges::max_element(inside_, [](const auto& x, const auto& y) {
+    return std::pair(x.second.deepest, x.second.count) < std::pair(y.second.deepest, y.second.count);
+  });
+  if (deepest.count > 0)
     fmt::print("\nThe deepest is vertex {} of {} inside {}: {} in {} {}.\n", deepest.deepest_vertex,
                name_of(input_, pair.a), name_of(input_, pair.b), deepest.deepest, noun_,
                deepest.frame_of_deepest);
   fmt::print("\n");
 }
 
+void TextReport::print_impacts() const {
+  if (impacts_.empty()) return fmt::print("Nothing touches.\n\n");
+  fmt::print("{:<20} {:>16} {:>16} {:>24}\n", "to frame", "vertex-face", "edge-edge", "earliest, 0 to 1");
+  for (const ImpactStep& step : impact_steps_)
+    fmt::print("{:<20} {:>16} {:>16} {:>24}\n", step.number, grouped(step.vertex_face),
+               grouped(step.edge_edge), step.earliest);
+  if (steps_with_impacts_ > impact_steps_.size())
+    fmt::print("and {} in which something touches; --json lists all\n",
+               counted(steps_with_impacts_ - impact_steps_.size(), "step"));
+  fmt::print("\n{:<20} {:<20} {:>8} {:>16} {:>16}\n", "object", "touches", "steps", "vertex-face",
+             "edge-edge");
+  print_table(impacts_, "--json", [](const ImpactSummary& pair) {
+    return fmt::format("{:>16} {:>16}", grouped(pair.count - pair.edge_edge), grouped(pair.edge_edge));
+  });
+  std::uint64_t all = 0;
+  for (const auto& [pair, summary] : impacts_) all += summary.count;
+  fmt::print("\n{} that touch within a step\n\n", counted(all, "pair of elements", "pairs of elements"));
+  if (impacts_within_tolerance_ > 0)
+    fmt::print("{} of them within tolerance only: floating point cannot decide whether they touch\n\n",
+               grouped(impacts_within_tolerance_));
+}
+
 void TextReport::print_pairs() const {
   if (pairs_.empty()) {
     const bool finds_only_these = input_.simulation.scene.contacts == ContactKinds::intersection;
-    fmt::print("{}\n\n", finds_only_these ? "Nothing touches." : "No triangles intersect.");
-    return;
+    return fmt::print("{}\n\n", finds_only_these ? "Nothing touches." : "No triangles intersect.");
   }
-  std::vector<std::pair<ObjectPair, PairSummary>> rows(pairs_.begin(), pairs_.end());
-  std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
-    if (x.second.triangle_pairs != y.second.triangle_pairs)
-      return x.second.triangle_pairs > y.second.triangle_pairs;
-    return x.first < y.first;
-  });
-  const std::size_t left_out = rows.size() - std::min(rows.size(), most_rows);
-  rows.resize(rows.size() - left_out);
-
   fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", "object", "touches", "frames", "triangle pairs",
              "most in a frame", "in frame");
-  for (const auto& [pair, summary] : rows) {
-    fmt::print("{:<20} {:<20} {:>8} {:>16} {:>16} {:>12}\n", name_of(input_, pair.a),
-               pair.a == pair.b ? "itself" : name_of(input_, pair.b), grouped(summary.frames),
-               grouped(summary.triangle_pairs), grouped(summary.most), summary.frame_of_most);
-  }
-  if (left_out > 0) fmt::print("and {} with fewer; --json lists all\n", counted(left_out, "pair"));
+  print_table(pairs_, "--json", [](const PairSummary& pair) {
+    return fmt::format("{:>16} {:>16} {:>12}", grouped(pair.count), grouped(pair.most), pair.frame_of_most);
+  });
   fmt::print("\n{} that {}; pairs of objects began to touch {} and separated {}\n\n",
              counted(triangle_pairs_, "triangle pair"), triangle_pairs_ == 1 ? "intersects" : "intersect",
              counted(begun_, "time"), counted(ended_, "time"));

@@ -13,12 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "base/input_stream.hpp"
+#include "base/files.hpp"
 #include "base/text.hpp"
 #include "inputs/placement.hpp"
 #include "options/option_needs.hpp"
 #include "scene_file/scene_motion.hpp"
-#include "scene_file/toml_limits.hpp"
 #include "scene_file/toml_reader.hpp"
 #include "supple/comparison.hpp"
 #include "supple/error.hpp"

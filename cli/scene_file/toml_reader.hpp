@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -17,6 +18,14 @@
 #include "supple/types.hpp"
 
 namespace supple::cli {
+
+/// Checks what the TOML parser cannot: before it parses, the text must have only characters that TOML allows
+/// outside of strings and comments, brackets that match, and neither deep lists and tables nor keys of many
+/// parts, which would overflow the stack. Throws `Error` with file and line.
+void check_toml_limits(std::string_view text, const std::filesystem::path& path);
+
+/// Files beyond this size are not read, bytes.
+inline constexpr std::size_t most_toml_bytes = std::size_t{64} << 20;
 
 /// Reads the values of one table of a TOML file. It remembers the keys that were read, so that `finish` can
 /// reject all others. Every error names the file, the line and the key, and says what is allowed.
@@ -64,6 +73,16 @@ class TomlReader {
 
  private:
   const toml::node* node(const std::string& key);
+  /// The value under a key, which must have this type; null when the key is absent.
+  template <class Type>
+  auto value_of(const std::string& key, const char* expected) {
+    const toml::node* const found = node(key);
+    const auto* const value = found ? found->as<Type>() : nullptr;
+    if (found && !value) fail(key, std::string("must be ") + expected);
+    return value;
+  }
+  const toml::array& array_of(const toml::node& node, const std::string& key, const std::string& expected,
+                              std::size_t size) const;
   double number(const toml::node& node, const std::string& key, const char* expected) const;
   Vec3d point(const toml::node& node, const std::string& key, const char* expected) const;
   std::int64_t integer(const std::string& key, const ValueRange& range);

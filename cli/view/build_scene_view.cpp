@@ -12,8 +12,7 @@
 
 #include "base/text.hpp"
 #include "export/embedded.hpp"
-#include "inputs/frame_files.hpp"
-#include "inputs/recorded_input.hpp"
+#include "inputs/inputs.hpp"
 #include "supple/error.hpp"
 #include "view/recorded_frames.hpp"
 
@@ -36,11 +35,6 @@ class FileFrames : public viewer::Frames {
  public:
   explicit FileFrames(const Input& input) : simulation_(input.simulation) {
     for (const InputObject& object : input.objects) objects_.push_back(mover(object));
-    for (const InputObject& object : input.objects) {
-      if (const auto* sequence = motion_of<FrameSequence>(object))
-        count_ = std::max<std::uint64_t>(count_, sequence->files.size());
-      if (const auto* motion = motion_of<ComputedMotion>(object)) count_ = std::max(count_, motion->count);
-    }
   }
 
   std::uint64_t count() const override { return count_; }
@@ -52,12 +46,11 @@ class FileFrames : public viewer::Frames {
  private:
   using Mover = std::function<void(std::uint64_t frame, std::span<Vec3d> positions)>;
 
-  Mover mover(const InputObject& object) const {
-    if (const auto* sequence = motion_of<FrameSequence>(object)) {
-      const auto files = std::make_shared<const FrameFiles>(*sequence, object.mesh);
-      return [files](std::uint64_t frame, std::span<Vec3d> positions) { files->read(frame, positions); };
+  Mover mover(const InputObject& object) {
+    if (const auto frames = frames_of(object)) {
+      count_ = std::max(count_, frames->count);
+      return frames->positions;
     }
-    if (const auto* motion = motion_of<ComputedMotion>(object)) return motion->positions;
     const auto rest = std::make_shared<const std::vector<Vec3d>>(object.mesh.positions);
     if (const auto* motion = motion_of<WaveMotion>(object)) {
       return [this, motion = *motion, rest](std::uint64_t frame, std::span<Vec3d> positions) {
@@ -77,7 +70,7 @@ class FileFrames : public viewer::Frames {
 };
 
 /// Null for a simulation.
-std::shared_ptr<viewer::Frames> frames_of(const Input& input, const ViewOptions& options) {
+std::shared_ptr<viewer::Frames> view_frames_of(const Input& input, const ViewOptions& options) {
   for (const InputObject& object : input.objects) {
     if (const auto* motion = motion_of<RecordedMotion>(object))
       return std::make_shared<RecordedFrames>(options.inputs.front(), motion->recording, options.follow);
@@ -181,7 +174,7 @@ viewer::SceneView build_scene_view(const Input& input, const ViewOptions& option
   show.title = title_of(options.inputs);
   show.simulation = input.simulation;
   for (const InputObject& object : input.objects) show.objects.push_back(object_of(object));
-  show.frames = frames_of(input, options);
+  show.frames = view_frames_of(input, options);
   if (!options.compared.empty()) compare(show, input, options);
   return show;
 }

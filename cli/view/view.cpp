@@ -1,4 +1,4 @@
-#include "view/view.hpp"
+#include "commands/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/exit_status.hpp"
+#include "base/files.hpp"
 #include "base/interruption.hpp"
-#include "base/missing_threads.hpp"
-#include "base/output_names.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/output_file.hpp"
+#include "base/files.hpp"
 #include "machine.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"

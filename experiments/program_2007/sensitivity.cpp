@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-#include "base/input_stream.hpp"
+#include "base/files.hpp"
 #include "fit.hpp"
 #include "inputs/inputs.hpp"
 #include "judgement.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "base/input_stream.hpp"
+#include "base/files.hpp"
 #include "machine.hpp"
 #include "supple/error.hpp"
 #include "table1/paper_table.hpp"

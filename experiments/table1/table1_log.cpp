@@ -3,7 +3,7 @@
 #include <charconv>
 #include <system_error>
 
-#include "base/input_stream.hpp"
+#include "base/files.hpp"
 #include "machine.hpp"
 #include "supple/error.hpp"
 #include "table1/table1_runs.hpp"

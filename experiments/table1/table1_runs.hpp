@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/files.hpp"
 #include "base/interruption.hpp"
-#include "base/output_file.hpp"
 #include "fit.hpp"
 #include "inputs/inputs.hpp"
 #include "supple/simulation.hpp"

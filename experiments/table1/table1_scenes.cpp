@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "inputs/random.hpp"
+#include "inputs/placement.hpp"
 #include "scene_file/scene_file.hpp"
 #include "supple/error.hpp"
 

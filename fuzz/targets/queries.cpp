@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "query/point_file.hpp"
 #include "query/query_file.hpp"
 #include "query/rational.hpp"
 #include "supple/error.hpp"

@@ -121,7 +121,8 @@ TEST(CurveDepth, OfABoxAsThickAsTheSlabAroundIt) {
     Scene scene({.contacts = ContactKinds::penetration, .curves = true});
     scene.add(make_box({1, 0.125, 1}, 1), {.solid = true});
     TriangleMesh box = make_box({0.5, 0.125, 0.5}, 1);
-    for (Vec3d& p : box.positions) p.x += 0.25 + offset;  // within the slab, flush on a third side, or beyond it
+    for (Vec3d& p : box.positions)
+      p.x += 0.25 + offset;  // within the slab, flush on a third side, or beyond it
     scene.add(box, {.solid = true});
     const DetectResult& result = scene.detect();
     ASSERT_GT(result.curves.size(), 0u);
