@@ -779,6 +779,8 @@ CONTRACTS = {
         'The number of cores that this process may use, at least 1.',
     'use_comparison_methods':
         'Lets this process use the methods that only serve comparisons with the defaults: `SceneOptions.bounding_volume` other than `aabb`, `ObjectOctreeOptions.build` other than `balanced`, and `BroadPhaseMethod.sweep` and `brute`. Without this call, `Scene`, `Scene.add` and `BroadPhase` throw `Error` for these options. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
+    'use_manifolds':
+        'Lets the scenes of this process make manifolds: `SceneOptions.manifolds` and `DetectRequest.manifolds`. Without this call, `Scene.detect` throws `Error` for them. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
     'valid_utf8':
         'Replaces every byte that is not part of valid UTF-8 by U+FFFD, because names of files, and names in files, may be any bytes.',
     'value_of_set':
