@@ -264,7 +264,7 @@ void TextReport::print_penetrations() const {
     return fmt::format("{:>16} {:>24} {:>12} {:>16}", grouped(inside.count), inside.deepest,
                        inside.frame_of_deepest, grouped(inside.frames_contained));
   });
-  // Of several, the one with the most vertices.
+  // Of pairs that are equally deep, the report names the one with the most vertices.
   const auto& [pair, deepest] = *std::ranges::max_element(inside_, [](const auto& x, const auto& y) {
     return std::pair(x.second.deepest, x.second.count) < std::pair(y.second.deepest, y.second.count);
   });

@@ -40,7 +40,7 @@ class Events {
 
   PairCache volume_, narrow_phase_, contact_, proximity_, penetration_;
   const std::array<PairCache*, 5> all_{&volume_, &narrow_phase_, &contact_, &proximity_, &penetration_};
-  std::unique_ptr<ManifoldMaker> manifolds_;  // once they were asked for
+  std::unique_ptr<ManifoldMaker> manifolds_;  // null until a step asks for manifolds
   // Scratch memory of a step.
   std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_, deep_pairs_;
 };

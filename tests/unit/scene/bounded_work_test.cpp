@@ -315,28 +315,50 @@ TEST(BoundedWork, OfARayIsThatOfANearOne) {
   }
 }
 
-/// The work for the curve of a ball that is pressed into a block of `cells` cells of length 1.
-std::size_t work_of_curves(std::uint32_t cells) {
-  const double length = cells;
-  TriangleMesh block = moved(make_box({length, length, length}, cells), {0.25, -length / 2, 0.125}),
-               ball = moved(scaled(make_icosphere(8), 2.5), {0, 1.75, 0});
+/// The work for the only curve of two meshes.
+std::size_t work_of_curve(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, double depth) {
   Scene scene({.contacts = ContactKinds::intersection});
-  scene.add(ball, {.solid = true});
-  scene.add(block, {.solid = true});
+  scene.add(mesh_a, {.solid = true});
+  scene.add(mesh_b, {.solid = true});
   const DetectResult& result = scene.detect();
-  Searched a(ball, 0), b(block, 1);
+  Searched a(mesh_a, 0), b(mesh_b, 1);
   const QueriedObject of_a = a.view(), of_b = b.view();
   CurveFinder finder;
   CurveLists lists;
   finder.find({a.surface(), b.surface(), &of_a, &of_b, true, true, false, &result.groups[0], &result}, lists);
   EXPECT_EQ(lists.curves.size(), 1u);
-  EXPECT_NEAR(lists.curves[0].depth, 0.75, 0.01);
+  EXPECT_NEAR(lists.curves[0].depth, depth, 0.01);
   return finder.visited();
 }
 
 TEST(BoundedWork, OfACurveIsThatOfItsContacts) {
-  EXPECT_LT(work_of_curves(16), 2000u);
-  EXPECT_EQ(work_of_curves(80), work_of_curves(16));
+  // A ball that is pressed into a block of `cells` cells of length 1.
+  const auto work_of = [](std::uint32_t cells) {
+    const double length = cells;
+    return work_of_curve(moved(scaled(make_icosphere(8), 2.5), {0, 1.75, 0}),
+                         moved(make_box({length, length, length}, cells), {0.25, -length / 2, 0.125}), 0.75);
+  };
+  EXPECT_LT(work_of(16), 2000u);
+  EXPECT_EQ(work_of(80), work_of(16));
+}
+
+/// Each triangle is beside all others, at a vertex of many triangles.
+TEST(BoundedWork, OfTheCurveOfTwoTipsIsLinear) {
+  const auto cone = [](std::uint32_t count, double tip, double base) {
+    TriangleMesh mesh{"cone", {{0, tip, 0}, {0, base, 0}}, {}};
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double turns = static_cast<double>(i) / count;
+      mesh.positions.push_back({cos_turns(turns), base, sin_turns(turns)});
+      const std::uint32_t p = 2 + i, q = 2 + (i + 1) % count;
+      mesh.triangles.push_back(base > tip ? Triangle{0, p, q} : Triangle{0, q, p});
+      mesh.triangles.push_back(base > tip ? Triangle{1, q, p} : Triangle{1, p, q});
+    }
+    return mesh;
+  };
+  const auto work_of = [&](std::uint32_t count) {
+    return work_of_curve(cone(count, -0.1, 0.9), cone(count, 0, -1), 0.1);
+  };
+  EXPECT_LT(work_of(800), 5 * work_of(200));
 }
 
 /// Small objects, so that exact brute force decides in time.

@@ -127,7 +127,7 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
   const WayOut::Way way = way_out_.find(candidates_);
   curve.normal = way.normal;
   curve.depth = way.depth == WayOut::none ? 0 : restored(way.depth, scale);
-  visited_ += way_out_.triangle_count();
+  visited_ += way_out_.visited();
 }
 
 }  // namespace supple

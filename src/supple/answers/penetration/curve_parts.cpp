@@ -97,7 +97,7 @@ double way_of_upright(const TrianglePoints& upright, const TrianglePoints& q, do
 }
 
 /// The longest way in z from a to b; minus infinity when nothing of b is straight ahead.
-double longest_way(const TrianglePoints& a, const TrianglePoints& b) {
+double way_between(const TrianglePoints& a, const TrianglePoints& b) {
   double size = 0;
   for (std::size_t i = 0; i < 3; ++i)
     size = std::max({size, largest_magnitude(a[i] - a[0]), largest_magnitude(b[i] - b[0])});
@@ -118,30 +118,21 @@ double longest_way(const TrianglePoints& a, const TrianglePoints& b) {
 
 }  // namespace
 
-void CurveParts::look_along(const Vec3d& normal) {
+std::optional<Vec3d> CurveParts::middle_of(const TrianglePoints& p, const TrianglePoints& q) const {
+  const SharedPolygon polygon(seen(p), seen(q));
+  if (polygon.begin() == polygon.end()) return std::nullopt;
+  Vec3d sum;
+  for (const Vec3d& corner : polygon) sum += corner;
+  sum = sum / static_cast<double>(polygon.end() - polygon.begin());
+  return sum.x * axes_[0] + sum.y * axes_[1] + sum.z * axes_[2];
+}
+
+double CurveParts::way_along(const Vec3d& normal, double limit) {
   const Vec3d size = absolute(normal);
   const bool x_is_least = size.x <= size.y && size.x <= size.z;
   const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
   const Vec3d across = cross(normal, axis), u = across / norm(across), v = cross(normal, u);
   axes_ = {u, v, normal};
-}
-
-double CurveParts::way_between(const TrianglePoints& a, const TrianglePoints& b) const {
-  return longest_way(seen(a), seen(b));
-}
-
-Vec3d CurveParts::middle_of(const TrianglePoints& p, const TrianglePoints& q) const {
-  Vec3d sum;
-  double count = 0;
-  for (const Vec3d& corner : SharedPolygon(seen(p), seen(q))) {
-    sum += corner;
-    ++count;
-  }
-  return (1 / count) * (sum.x * axes_[0] + sum.y * axes_[1] + sum.z * axes_[2]);
-}
-
-double CurveParts::way_along(const Vec3d& normal, double limit) {
-  look_along(normal);
   if (triangles_[0].empty() || triangles_[1].empty()) return nothing_ahead;
   for (std::size_t side = 0; side < 2; ++side) {
     if (!is_built_[side]) build(side);
@@ -172,7 +163,7 @@ double CurveParts::way_along(const Vec3d& normal, double limit) {
     if (of_a.child == 0 && of_b.child == 0) {
       for (std::uint32_t i = of_a.first; i < of_a.last; ++i) {
         for (std::uint32_t k = of_b.first; k < of_b.last; ++k) {
-          const double way = longest_way(projected_[0][i].corners, projected_[1][k].corners);
+          const double way = way_between(projected_[0][i].corners, projected_[1][k].corners);
           if (way > longest) ends_ = {triangles_[0][i].triangle, triangles_[1][k].triangle};
           longest = std::max(longest, way);
         }

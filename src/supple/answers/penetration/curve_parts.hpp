@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "geometry/vector.hpp"
@@ -37,14 +38,11 @@ class CurveParts {
   double way_along(const Vec3d& normal, double limit = nothing_ahead);
   /// A triangle of a and one of b.
   using Ends = std::array<std::uint32_t, 2>;
-  /// After `way_along` without a limit: those between which the longest way is, if it found some.
+  /// After `way_along` without a limit: those between which the longest way is, if there is one.
   const Ends& ends() const { return ends_; }
-
-  void look_along(const Vec3d& normal);
-  /// After `look_along`: the longest way between two triangles; minus infinity where there is none.
-  double way_between(const TrianglePoints& a, const TrianglePoints& b) const;
-  /// A point of triangle p in the middle of what it shares with q as seen along the vector. They share some.
-  Vec3d middle_of(const TrianglePoints& p, const TrianglePoints& q) const;
+  /// After `way_along`: a point of triangle p in the middle of what it shares with q as seen along the
+  /// vector; nothing where they share nothing.
+  std::optional<Vec3d> middle_of(const TrianglePoints& p, const TrianglePoints& q) const;
 
   /// After `way_along`: whether a triangle of the other side is straight ahead of a point of a, or straight
   /// behind a point of b, within the way. Points on borders count.

@@ -37,6 +37,7 @@ void WayOut::clear(double scale, const Vec3d& origin) {
   scale_ = scale;
   origin_ = origin;
   parts_.clear();
+  beside_count_ = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     for (const std::uint32_t t : triangles_[side]) is_listed_[side][t] = 0;
     triangles_[side].clear();
@@ -140,53 +141,51 @@ void WayOut::try_corners(std::span<const WayCandidate> candidates) {
   }
 }
 
-/// Where the longest way begins in the front of a, or ends in the back of b, as seen along the normal, adds
-/// the other side of the solid there. Returns whether it was missing.
-bool WayOut::add_other_sides(const Vec3d& normal) {
-  const CurveParts::Ends ends = parts_.ends();
+/// Where a way begins in the front of a, or ends in the back of b, as seen along the normal, adds the other
+/// side of the solid there. Returns whether it was missing.
+bool WayOut::add_other_sides(const Vec3d& normal, const CurveParts::Ends& ends) {
+  constexpr double upright = 0x1p-20, inwards = 0x1p-24;  // so far off the surface begins the ray
   const std::size_t before = triangle_count();
   for (std::size_t side = 0; side < 2; ++side) {
-    const TrianglePoints own = scaled_corners(side, ends[side]),
-                         other = scaled_corners(1 - side, ends[1 - side]);
-    const double sign = side == 0 ? -1 : 1, outwards = sign * dot(unit_normal(own), normal);
-    if (!bodies_[side].is_solid || !(outwards < 0)) continue;
-    constexpr double inwards = 0x1p-24;  // off the surface
-    const Vec3d start = parts_.middle_of(own, other) + sign * inwards * normal;
-    cast(1 - side, (1 / scale_) * (start + origin_), normal, true);
+    const TrianglePoints own = scaled_corners(side, ends[side]);
+    const double sign = side == 0 ? -1 : 1;
+    if (!bodies_[side].is_solid || sign * dot(unit_normal(own), normal) > -upright) continue;
+    const auto middle = parts_.middle_of(own, scaled_corners(1 - side, ends[1 - side]));
+    if (middle) cast(1 - side, (1 / scale_) * (*middle + sign * inwards * normal + origin_), normal, true);
   }
   return triangle_count() > before;
 }
 
-/// The depth after which the surfaces around the contact do not overlap either: from the ends of the longest
-/// way, it goes on to neighbours as long as they have a longer way. Above the common part of two convex
-/// bodies, their distance along the normal is concave, so this finds their largest one.
+/// The depth after which the surfaces around the contact do not overlap either: from its ends, the longest
+/// way goes on to triangles beside them as long as they have a longer one. Above the common part of two
+/// convex bodies, their distance along the normal is concave, so this finds their largest one.
 double WayOut::depth_of_surfaces(const Way& way) {
   if (bodies_[0].queried == nullptr) return way.depth;
   double longest = parts_.way_along(way.normal);
-  if (longest != none && add_other_sides(way.normal)) longest = parts_.way_along(way.normal);
   if (longest == none) return way.depth;
   CurveParts::Ends ends = parts_.ends();
-  for (bool is_longer = true; is_longer;) {
-    is_longer = false;
+  for (;;) {
+    beside_.clear();
     for (std::size_t side = 0; side < 2; ++side) {
-      around_[side].clear();
+      around_.clear();
       for (const std::uint32_t v : bodies_[side].surface.triangle(ends[side])) {
         const auto around = bodies_[side].surface.around->around(v);
-        around_[side].insert(around_[side].end(), around.begin(), around.end());
+        around_.insert(around_.end(), around.begin(), around.end());
       }
-      sort_once(around_[side]);
+      sort_once(around_);
+      for (const std::uint32_t t : around_) beside_.add(side, t, scaled_corners(side, t));
+      beside_count_ += around_.size();
     }
-    for (const std::uint32_t a : around_[0]) {
-      for (const std::uint32_t b : around_[1]) {
-        const double longer = parts_.way_between(scaled_corners(0, a), scaled_corners(1, b));
-        if (!(longer > longest * equal + CurveParts::rounding)) continue;
-        longest = longer;
-        ends = {a, b};
-        is_longer = true;
-      }
+    const double longer = beside_.way_along(way.normal);
+    if (longer != none && longer > longest * equal + CurveParts::rounding) {
+      longest = longer;
+      ends = beside_.ends();
+      continue;
     }
+    if (!add_other_sides(way.normal, ends)) return std::max(way.depth, longest);
+    longest = std::max(longest, parts_.way_along(way.normal));
+    ends = parts_.ends();
   }
-  return std::max(way.depth, longest);
 }
 
 /// The depth from which on no probe is inside: it may leave one part of the other body and enter the next

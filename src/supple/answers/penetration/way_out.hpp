@@ -60,7 +60,8 @@ class WayOut {
   /// The candidate with the least depth, or a direction between two or three faces with a smaller one. There
   /// is at least one candidate.
   Way find(std::span<const WayCandidate> candidates);
-  std::size_t triangle_count() const { return triangles_[0].size() + triangles_[1].size(); }
+  /// The triangles that it read for this curve.
+  std::size_t visited() const { return triangle_count() + beside_count_; }
 
  private:
   struct Tried {
@@ -69,12 +70,13 @@ class WayOut {
     bool is_whole = false;   // it is that of the surfaces around the contact, too
   };
 
+  std::size_t triangle_count() const { return triangles_[0].size() + triangles_[1].size(); }
   void choose_probes(std::size_t side);
   Tried try_along(const Vec3d& normal, double limit);
   double cast(std::size_t side, const Vec3d& point, const Vec3d& normal, bool is_inside);
   void try_corners(std::span<const WayCandidate> candidates);
   TrianglePoints scaled_corners(std::size_t side, std::uint32_t triangle) const;
-  bool add_other_sides(const Vec3d& normal);
+  bool add_other_sides(const Vec3d& normal, const CurveParts::Ends& ends);
   double depth_of_surfaces(const Way& way);
   double depth_without_return(const Way& way, int& parts);
   double least_depth() const;
@@ -83,12 +85,13 @@ class WayOut {
   std::array<ObjectQueries, 2> queries_;  // rays that meet a body
   double scale_ = 1;
   Vec3d origin_;
-  CurveParts parts_;
+  CurveParts parts_, beside_;  // beside the ends of the longest way
+  std::size_t beside_count_ = 0;
   std::array<std::vector<std::uint32_t>, 2> triangles_;  // of the parts
   std::array<std::vector<std::uint8_t>, 2> is_listed_;   // by triangle
   std::array<std::vector<Vec3d>, 2> probes_;
   std::vector<Vec3d> chosen_;
-  std::array<std::vector<std::uint32_t>, 2> around_;
+  std::vector<std::uint32_t> around_;
   std::vector<Tried> tried_;
 };
 
