@@ -118,7 +118,17 @@ double way_between(const TrianglePoints& a, const TrianglePoints& b) {
 
 }  // namespace
 
-std::optional<Vec3d> CurveParts::middle_of(const TrianglePoints& p, const TrianglePoints& q) const {
+void CurveParts::look_along(const Vec3d& normal) {
+  const Vec3d size = absolute(normal);
+  const bool x_is_least = size.x <= size.y && size.x <= size.z;
+  const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  const Vec3d across = cross(normal, axis), u = across / norm(across), v = cross(normal, u);
+  axes_ = {u, v, normal};
+}
+
+std::optional<Vec3d> CurveParts::middle_of(const TrianglePoints& p, const TrianglePoints& q,
+                                           const Vec3d& normal) {
+  look_along(normal);
   const SharedPolygon polygon(seen(p), seen(q));
   if (polygon.begin() == polygon.end()) return std::nullopt;
   Vec3d sum;
@@ -128,11 +138,7 @@ std::optional<Vec3d> CurveParts::middle_of(const TrianglePoints& p, const Triang
 }
 
 double CurveParts::way_along(const Vec3d& normal, double limit) {
-  const Vec3d size = absolute(normal);
-  const bool x_is_least = size.x <= size.y && size.x <= size.z;
-  const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-  const Vec3d across = cross(normal, axis), u = across / norm(across), v = cross(normal, u);
-  axes_ = {u, v, normal};
+  look_along(normal);
   if (triangles_[0].empty() || triangles_[1].empty()) return nothing_ahead;
   for (std::size_t side = 0; side < 2; ++side) {
     if (!is_built_[side]) build(side);

@@ -40,9 +40,9 @@ class CurveParts {
   using Ends = std::array<std::uint32_t, 2>;
   /// After `way_along` without a limit: those between which the longest way is, if there is one.
   const Ends& ends() const { return ends_; }
-  /// After `way_along`: a point of triangle p in the middle of what it shares with q as seen along the
-  /// vector; nothing where they share nothing.
-  std::optional<Vec3d> middle_of(const TrianglePoints& p, const TrianglePoints& q) const;
+  /// A point of triangle p in the middle of what it shares with q as seen along the unit vector; nothing
+  /// where they share nothing.
+  std::optional<Vec3d> middle_of(const TrianglePoints& p, const TrianglePoints& q, const Vec3d& normal);
 
   /// After `way_along`: whether a triangle of the other side is straight ahead of a point of a, or straight
   /// behind a point of b, within the way. Points on borders count.
@@ -79,6 +79,7 @@ class CurveParts {
     double bound;
   };
 
+  void look_along(const Vec3d& normal);
   void build(std::size_t side);
   void split(std::size_t side, std::uint32_t node);
   void project(std::size_t side);

@@ -95,18 +95,22 @@ double WayOut::cast(std::size_t side, const Vec3d& point, const Vec3d& normal, b
 /// Ends early when the depth exceeds the limit.
 WayOut::Tried WayOut::try_along(const Vec3d& normal, double limit) {
   double way = parts_.way_along(normal, limit * equal), depth = way == none ? -1 : way;
+  std::size_t part_count = triangle_count();
   for (std::size_t side = 0; side < 2 && bodies_[0].queried != nullptr && depth <= limit * equal; ++side) {
     for (const Vec3d& probe : probes_[side]) {
       if (way != none && parts_.is_covered(side, scale_ * probe - origin_, way)) continue;
       const double exit = cast(side, probe, normal, true);
       if (exit <= depth) continue;
       // The triangle through which the probe leaves is a part now.
-      if (exit <= limit * equal) way = parts_.way_along(normal, limit * equal);
+      if (exit <= limit * equal) {
+        way = parts_.way_along(normal, limit * equal);
+        part_count = triangle_count();
+      }
       depth = std::max(exit, way == none ? -1 : way);
       if (depth > limit * equal) break;
     }
   }
-  return {{normal, depth < 0 ? none : depth}, depth > limit * equal};
+  return {{normal, depth < 0 ? none : depth}, depth > limit * equal, false, way, parts_.ends(), part_count};
 }
 
 double WayOut::least_depth() const {
@@ -150,40 +154,60 @@ bool WayOut::add_other_sides(const Vec3d& normal, const CurveParts::Ends& ends) 
     const TrianglePoints own = scaled_corners(side, ends[side]);
     const double sign = side == 0 ? -1 : 1;
     if (!bodies_[side].is_solid || sign * dot(unit_normal(own), normal) > -upright) continue;
-    const auto middle = parts_.middle_of(own, scaled_corners(1 - side, ends[1 - side]));
+    const auto middle = parts_.middle_of(own, scaled_corners(1 - side, ends[1 - side]), normal);
     if (middle) cast(1 - side, (1 / scale_) * (*middle + sign * inwards * normal + origin_), normal, true);
   }
   return triangle_count() > before;
 }
 
+/// Lists the triangles beside the ends of a way. Returns a bound on the ways between them.
+double WayOut::list_beside(const Vec3d& normal, const CurveParts::Ends& ends) {
+  beside_.clear();
+  double lowest = none, highest = -none;
+  for (std::size_t side = 0; side < 2; ++side) {
+    around_.clear();
+    for (const std::uint32_t v : bodies_[side].surface.triangle(ends[side])) {
+      const auto around = bodies_[side].surface.around->around(v);
+      around_.insert(around_.end(), around.begin(), around.end());
+    }
+    sort_once(around_);
+    for (const std::uint32_t t : around_) {
+      const TrianglePoints corners = scaled_corners(side, t);
+      beside_.add(side, t, corners);
+      for (const Vec3d& p : corners) {
+        const double height = dot(normal, p);
+        lowest = side == 0 ? std::min(lowest, height) : lowest;
+        highest = side == 1 ? std::max(highest, height) : highest;
+      }
+    }
+    beside_count_ += around_.size();
+  }
+  return highest - lowest;
+}
+
 /// The depth after which the surfaces around the contact do not overlap either: from its ends, the longest
 /// way goes on to triangles beside them as long as they have a longer one. Above the common part of two
 /// convex bodies, their distance along the normal is concave, so this finds their largest one.
-double WayOut::depth_of_surfaces(const Way& way) {
-  if (bodies_[0].queried == nullptr) return way.depth;
-  double longest = parts_.way_along(way.normal);
-  if (longest == none) return way.depth;
-  CurveParts::Ends ends = parts_.ends();
+double WayOut::depth_of_surfaces(const Tried& tried) {
+  const Vec3d& normal = tried.way.normal;
+  if (bodies_[0].queried == nullptr) return tried.way.depth;
+  double longest = tried.longest;
+  CurveParts::Ends ends = tried.ends;
+  if (tried.part_count < triangle_count()) {
+    longest = parts_.way_along(normal);
+    ends = parts_.ends();
+  }
+  if (longest == none) return tried.way.depth;
   for (;;) {
-    beside_.clear();
-    for (std::size_t side = 0; side < 2; ++side) {
-      around_.clear();
-      for (const std::uint32_t v : bodies_[side].surface.triangle(ends[side])) {
-        const auto around = bodies_[side].surface.around->around(v);
-        around_.insert(around_.end(), around.begin(), around.end());
-      }
-      sort_once(around_);
-      for (const std::uint32_t t : around_) beside_.add(side, t, scaled_corners(side, t));
-      beside_count_ += around_.size();
-    }
-    const double longer = beside_.way_along(way.normal);
-    if (longer != none && longer > longest * equal + CurveParts::rounding) {
+    const double least = longest * equal + CurveParts::rounding;
+    const double longer = list_beside(normal, ends) > least ? beside_.way_along(normal) : none;
+    if (longer != none && longer > least) {
       longest = longer;
       ends = beside_.ends();
       continue;
     }
-    if (!add_other_sides(way.normal, ends)) return std::max(way.depth, longest);
-    longest = std::max(longest, parts_.way_along(way.normal));
+    if (!add_other_sides(normal, ends)) return std::max(tried.way.depth, longest);
+    longest = std::max(longest, parts_.way_along(normal));
     ends = parts_.ends();
   }
 }
@@ -231,7 +255,7 @@ WayOut::Way WayOut::find(std::span<const WayCandidate> candidates) {
       if (best == nullptr || is_before(tried.way.normal, best->way.normal)) best = &tried;
     }
     if (least == none) return best->way;
-    const double of_contact = best->is_whole ? best->way.depth : depth_of_surfaces(best->way);
+    const double of_contact = best->is_whole ? best->way.depth : depth_of_surfaces(*best);
     best->is_whole = true;
     const double depth = depth_without_return({best->way.normal, of_contact}, parts);
     if (depth == best->way.depth) return best->way;

@@ -68,6 +68,9 @@ class WayOut {
     Way way;
     bool is_pruned = false;  // the depth is at least that of the way
     bool is_whole = false;   // it is that of the surfaces around the contact, too
+    double longest = none;   // the longest way between the first parts, and its ends
+    CurveParts::Ends ends{};
+    std::size_t part_count = 0;
   };
 
   std::size_t triangle_count() const { return triangles_[0].size() + triangles_[1].size(); }
@@ -77,7 +80,8 @@ class WayOut {
   void try_corners(std::span<const WayCandidate> candidates);
   TrianglePoints scaled_corners(std::size_t side, std::uint32_t triangle) const;
   bool add_other_sides(const Vec3d& normal, const CurveParts::Ends& ends);
-  double depth_of_surfaces(const Way& way);
+  double depth_of_surfaces(const Tried& tried);
+  double list_beside(const Vec3d& normal, const CurveParts::Ends& ends);
   double depth_without_return(const Way& way, int& parts);
   double least_depth() const;
 
