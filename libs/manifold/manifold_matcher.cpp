@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -39,9 +42,14 @@ void take_ids(const ManifoldLists& before, const Manifold& old, ManifoldLists& n
     }
   }
   for (std::size_t left = std::min(was.size(), is.size()); left > 0; --left) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < keys.size(); ++i) best = keys[i] < keys[best] ? i : best;
-    const std::size_t p = best % 4, q = best / 4;
+    // A tournament, because a loop over the keys would wait for each comparison.
+    std::array<std::size_t, 16> best;
+    std::iota(best.begin(), best.end(), 0);
+    for (std::size_t count = keys.size() / 2; count > 0; count /= 2) {
+      for (std::size_t i = 0; i < count; ++i)
+        best[i] = keys[best[2 * i + 1]] < keys[best[2 * i]] ? best[2 * i + 1] : best[2 * i];
+    }
+    const std::size_t p = best[0] % 4, q = best[0] / 4;
     is[q].id = was[p].id;
     is[q].lasting = Lasting::stay;
     for (std::size_t k = 0; k < 4; ++k) keys[4 * q + k] = keys[4 * k + p] = taken;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -9,7 +10,7 @@
 namespace supple {
 
 /// The boxes of the leaves that a search looked at last: searches that follow each other often look at the
-/// same leaves. Takes 1.6 MB, of which objects with few leaves use few.
+/// same leaves. Takes 1.6 MB for objects with many leaves.
 class RecentLeafBoxes {
  public:
   /// Call before searches of other objects, or of objects that moved.
@@ -18,11 +19,11 @@ class RecentLeafBoxes {
   const LeafBoxes& boxes_of(std::uint32_t object, const LeafArrays& arrays, std::uint32_t leaf,
                             std::uint32_t begin, std::uint32_t end) {
     constexpr std::size_t size = 1024;
-    if (keys_.empty()) {
-      boxes_.resize(size);
-      keys_.resize(size);
-    }
     const std::size_t place = (begin / leaf_block + leaf) % size;
+    if (place >= keys_.size()) {
+      boxes_.resize(std::bit_ceil(place + 1));
+      keys_.resize(boxes_.size());
+    }
     const Key key{object, begin};
     if (keys_[place] != key) {
       load_leaf_boxes(arrays, leaf, begin, end, boxes_[place]);

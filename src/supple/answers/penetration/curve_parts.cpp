@@ -62,8 +62,6 @@ class SharedPolygon {
   std::size_t count_ = 3;
 };
 
-constexpr double nothing = -std::numeric_limits<double>::infinity();
-
 /// The height of the plane of a triangle at a point, within that of its corners.
 double height_at(const TrianglePoints& q, double area, const Vec3d& p) {
   const double along_1 = turn(q[2], q[0], p) / area, along_2 = turn(q[0], q[1], p) / area;
@@ -75,7 +73,7 @@ double height_at(const TrianglePoints& q, double area, const Vec3d& p) {
 /// Edges at its border are not ahead of it.
 double way_of_upright(const TrianglePoints& upright, const TrianglePoints& q, double area, double slack,
                       double sign) {
-  double longest = nothing;
+  double longest = -CurveParts::nothing_ahead;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3d &p = upright[i], &r = upright[(i + 1) % 3];
     double first = 0, last = 1;
@@ -104,13 +102,13 @@ double way_between(const TrianglePoints& a, const TrianglePoints& b) {
   const double slack = 0x1p-40 * size, area_a = turn(a[0], a[1], a[2]), area_b = turn(b[0], b[1], b[2]);
   const bool a_is_upright = !(std::fabs(area_a) > slack * size),
              b_is_upright = !(std::fabs(area_b) > slack * size);
-  if (a_is_upright && b_is_upright) return nothing;
+  if (a_is_upright && b_is_upright) return -CurveParts::nothing_ahead;
   if (a_is_upright) return way_of_upright(a, b, area_b, slack, 1);
   if (b_is_upright) return way_of_upright(b, a, area_a, slack, -1);
-  if (!reaches_in(a, b, slack) || !reaches_in(b, a, slack)) return nothing;
+  if (!reaches_in(a, b, slack) || !reaches_in(b, a, slack)) return -CurveParts::nothing_ahead;
   // The heights stay within those of the corners, so that no way exceeds the bound of a node.
   const double lowest_a = std::min({a[0].z, a[1].z, a[2].z});
-  double longest = nothing;
+  double longest = -CurveParts::nothing_ahead;
   for (const Vec3d& p : SharedPolygon(a, b))
     longest = std::max(longest, height_at(b, area_b, p) - std::max(p.z, lowest_a));
   return longest;
@@ -137,7 +135,7 @@ std::optional<Vec3d> CurveParts::middle_of(const TrianglePoints& p, const Triang
   return sum.x * axes_[0] + sum.y * axes_[1] + sum.z * axes_[2];
 }
 
-double CurveParts::way_along(const Vec3d& normal, double limit) {
+double CurveParts::way_along(const Vec3d& normal, double limit, double least) {
   look_along(normal);
   if (triangles_[0].empty() || triangles_[1].empty()) return nothing_ahead;
   for (std::size_t side = 0; side < 2; ++side) {
@@ -145,7 +143,7 @@ double CurveParts::way_along(const Vec3d& normal, double limit) {
     project(side);
   }
   is_built_ = {true, true};
-  double longest = nothing;
+  double longest = least;
   const auto push = [&](std::uint32_t a, std::uint32_t b) {
     const Box &of_a = nodes_[0][a].box, &of_b = nodes_[1][b].box;
     if (of_a.is_upright && of_b.is_upright) return;
@@ -184,7 +182,7 @@ double CurveParts::way_along(const Vec3d& normal, double limit) {
     if (stack_.size() == first + 2 && stack_[first].bound > stack_[first + 1].bound)
       std::swap(stack_[first], stack_[first + 1]);
   }
-  return longest == nothing ? nothing_ahead : std::max(longest, 0.0);
+  return longest == least ? nothing_ahead : std::max(longest, 0.0);
 }
 
 bool CurveParts::is_covered(std::size_t side, const Vec3d& point, double way) {

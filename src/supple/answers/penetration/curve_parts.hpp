@@ -33,9 +33,10 @@ class CurveParts {
   /// The longest way along the unit vector from a point of a to a point of b, at least 0: so a passes b by
   /// this move. Triangles that are parallel to the vector, or that overlap only by rounding as seen along it,
   /// have no such points. Where there are none at all, `nothing_ahead`. The result is never too short; up to
-  /// `rounding`, it may be too long. The search ends where the way exceeds `limit`. O(n log n) for n
-  /// triangles whose pairs have ways that differ by more than rounding, and O(n) for further directions.
-  double way_along(const Vec3d& normal, double limit = nothing_ahead);
+  /// `rounding`, it may be too long. Ways up to `least` do not count. The search ends where the way exceeds
+  /// `limit`. O(n log n) for n triangles whose pairs have ways that differ by more than rounding, and O(n)
+  /// for further directions.
+  double way_along(const Vec3d& normal, double limit = nothing_ahead, double least = -nothing_ahead);
   /// A triangle of a and one of b.
   using Ends = std::array<std::uint32_t, 2>;
   /// After `way_along` without a limit: those between which the longest way is, if there is one.

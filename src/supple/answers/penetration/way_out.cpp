@@ -175,9 +175,8 @@ double WayOut::list_beside(const Vec3d& normal, const CurveParts::Ends& ends) {
       const TrianglePoints corners = scaled_corners(side, t);
       beside_.add(side, t, corners);
       for (const Vec3d& p : corners) {
-        const double height = dot(normal, p);
-        lowest = side == 0 ? std::min(lowest, height) : lowest;
-        highest = side == 1 ? std::max(highest, height) : highest;
+        if (side == 0) lowest = std::min(lowest, dot(normal, p));
+        if (side == 1) highest = std::max(highest, dot(normal, p));
       }
     }
     beside_count_ += around_.size();
@@ -191,25 +190,23 @@ double WayOut::list_beside(const Vec3d& normal, const CurveParts::Ends& ends) {
 double WayOut::depth_of_surfaces(const Tried& tried) {
   const Vec3d& normal = tried.way.normal;
   if (bodies_[0].queried == nullptr) return tried.way.depth;
-  double longest = tried.longest;
+  double longest = tried.longest == none ? -none : tried.longest;
   CurveParts::Ends ends = tried.ends;
-  if (tried.part_count < triangle_count()) {
-    longest = parts_.way_along(normal);
-    ends = parts_.ends();
-  }
-  if (longest == none) return tried.way.depth;
-  for (;;) {
-    const double least = longest * equal + CurveParts::rounding;
-    const double longer = list_beside(normal, ends) > least ? beside_.way_along(normal) : none;
-    if (longer != none && longer > least) {
-      longest = longer;
-      ends = beside_.ends();
-      continue;
+  const auto least = [&] { return longest * equal + CurveParts::rounding; };
+  const auto go_on = [&](CurveParts& parts) {
+    const double longer = parts.way_along(normal, none, least());
+    if (longer == none) return false;
+    longest = longer;
+    ends = parts.ends();
+    return true;
+  };
+  if (tried.part_count < triangle_count()) go_on(parts_);
+  if (longest < 0) return tried.way.depth;
+  do {
+    while (list_beside(normal, ends) > least() && go_on(beside_)) {
     }
-    if (!add_other_sides(normal, ends)) return std::max(tried.way.depth, longest);
-    longest = std::max(longest, parts_.way_along(normal));
-    ends = parts_.ends();
-  }
+  } while (add_other_sides(normal, ends) && go_on(parts_));
+  return std::max(tried.way.depth, longest);
 }
 
 /// The depth from which on no probe is inside: it may leave one part of the other body and enter the next
