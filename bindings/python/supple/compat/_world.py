@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from operator import le
 from typing import TYPE_CHECKING, Any, Iterable, TypeAlias
 
@@ -36,28 +35,15 @@ class Entry:
         with np.errstate(invalid="ignore"):
             self.center, self.half = 0.5 * lowest + 0.5 * highest, 0.5 * highest - 0.5 * lowest
         self.half = np.nextafter(self.half, np.inf)
-        reach = float(np.abs(self.center).max() + self.half.max())
-        self._numbers = (self.center.tolist(), self.half.tolist(), reach) if math.isfinite(reach) else None
-        self.box: Any = None  #: of the mesh where it is, as lists
+        self.places: Any = None  #: where it is one of several, and which one
+        self.number = 0
         self._parts: npt.NDArray[np.uint32] | None = None
 
-    def placed_box(self) -> tuple[list[float], list[float]]:
-        """The lowest and the highest corner of a box around the mesh where it is."""
-        if self._numbers is None:
-            return [math.inf] * 3, [math.inf] * 3
-        (x, y, z), (dx, dy, dz), reach = self._numbers
-        lowest, highest = [], []
-        for a, b, c, shift in self.transform.tolist()[:3]:
-            size_a, size_b, size_c = abs(a), abs(b), abs(c)
-            half = size_a * dx + size_b * dy + size_c * dz
-            # Rounded corners must not hide a pair.
-            half += 1e-12 * ((size_a + size_b + size_c) * reach + abs(shift))
-            center = a * x + b * y + c * z + shift
-            lowest.append(center - half)
-            highest.append(center + half)
-        if not math.isfinite(sum(lowest) + sum(highest)):
-            raise ValueError(f"the transform of {self.mesh.name} is not finite, or moves it too far")
-        return lowest, highest
+    @property
+    def box(self) -> list[list[float]]:
+        """Of the mesh where it is: the lowest and the highest corner."""
+        box: list[list[float]] = self.places.boxes[self.number].tolist()
+        return box
 
     def one_vertex_of_each_part(self) -> npt.NDArray[np.uint32]:
         if self._parts is None:
@@ -73,36 +59,34 @@ class Places:
         count = len(self.entries)
         self.structure = self.version = next(_changes)  #: of the list of entries, and of where they are
         self.boxes, self.changed = np.empty((count, 2, 3), np.float32), np.empty(count, np.int64)
+        self.transforms = np.array([entry.transform for entry in self.entries]).reshape(-1, 4, 4)
         self.centers = np.array([entry.center for entry in self.entries]).reshape(-1, 3)
         self.halves = np.array([entry.half for entry in self.entries]).reshape(-1, 3)
-        self._index = {id(entry): i for i, entry in enumerate(self.entries)}
+        for i, entry in enumerate(self.entries):
+            entry.places, entry.number = self, i
         self._moved = set(range(count))
 
     def move(self, entry: Entry) -> None:
-        self._moved.add(self._index[id(entry)])
+        self.transforms[entry.number] = entry.transform
+        self._moved.add(entry.number)
 
     def update(self) -> Places:
         """Computes the boxes of entries that moved."""
         if not self._moved:
             return self
-        moved = list(self._moved)
-        # A few numbers for each, which plain Python computes faster than arrays.
-        placed = [self.entries[i].placed_box() for i in moved]
-        boxes = _core.enclosing_boxes(
-            np.array([lowest for lowest, _ in placed]), np.array([highest for _, highest in placed]), 0
-        )
-        self.boxes[moved] = boxes
+        moved = np.array(sorted(self._moved), np.uint32)
+        unplaced = _core.place_boxes(self.transforms, self.centers, self.halves, moved, self.boxes)
+        if unplaced is not None:
+            name = self.entries[unplaced].mesh.name
+            raise ValueError(f"the transform of {name} is not finite, or moves it too far")
         self.version = self.changed[moved] = next(_changes)
-        for i, box in zip(moved, boxes.tolist()):
-            self.entries[i].box = box
         self._moved = set()
         return self
 
     def oriented(self) -> tuple[Floats, Floats, Floats]:
         """Of boxes that turn with the entries: centers (n, 3), half edges and their directions (n, 3, 3)."""
-        transforms = np.array([entry.transform for entry in self.entries]).reshape(-1, 4, 4)
-        turned = transforms[:, :3, :3]
-        centers = (turned @ self.centers[:, :, None])[:, :, 0] + transforms[:, :3, 3]
+        turned = self.transforms[:, :3, :3]
+        centers = (turned @ self.centers[:, :, None])[:, :, 0] + self.transforms[:, :3, 3]
         columns = turned.transpose(0, 2, 1)
         lengths = np.linalg.norm(columns, axis=2, keepdims=True)
         return centers, columns * self.halves[:, :, None], columns / np.where(lengths > 0, lengths, 1)
@@ -154,9 +138,7 @@ class World:
             return self._overlapping
         first, last = sources[0], sources[-1]
         if len(sources) == 2 and len(first.entries) * len(last.entries) <= FEW_PAIRS:
-            overlap = first.boxes[:, None, 0] <= last.boxes[:, 1]
-            overlap &= last.boxes[:, 0] <= first.boxes[:, None, 1]
-            found = np.argwhere(overlap.all(axis=2)).tolist()
+            found = _core.overlapping_boxes(first.boxes, last.boxes).tolist()
         else:
             found = self._search(structure, sources)
         self._seen = structure, version
@@ -246,8 +228,8 @@ class World:
 
 def near_entries(places: Places, place: Places, external: Entry) -> list[tuple[Entry, Entry]]:
     """The entries whose boxes overlap that of the only one of `place`."""
-    overlap = (places.boxes[:, 0] <= place.boxes[0, 1]) & (place.boxes[0, 0] <= places.boxes[:, 1])
-    return [(places.entries[i], external) for i in np.flatnonzero(overlap.all(axis=1)).tolist()]
+    found = _core.overlapping_boxes(places.boxes, place.boxes)
+    return [(places.entries[i], external) for i in found[:, 0].tolist()]
 
 
 def lower_bounds(a: Places, b: Places) -> Floats:
