@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "core/sort_once.hpp"
@@ -16,9 +17,13 @@ namespace {
 
 constexpr std::uint8_t is_visited = 1, is_triangle_corner = 2, is_on_surface = 4;
 
-template <class List>
-std::uint32_t size_of(const List& list) {
-  return static_cast<std::uint32_t>(list.size());
+/// Calls `visit(number, list of p, list of q)` for the lists of two tuples.
+template <class Lists, class Visit>
+void for_each_list(Lists p, Lists q, const Visit& visit) {
+  [&]<std::size_t... list>(std::index_sequence<list...>) {
+    (visit(std::integral_constant<std::size_t, list>(), std::get<list>(p), std::get<list>(q)), ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<Lists>>());
 }
 
 template <class Item>
@@ -35,20 +40,19 @@ bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObje
   workers_.resize(input.parallel.worker_count());
   outcomes_.plan(pairs_, input.versions, std::exchange(with_curves_, curves) == curves, workers_.size());
   const std::span<const std::uint32_t> open = outcomes_.open_jobs();
-  for (Worker& worker : workers_) {
-    worker.curves.clear();
-    worker.inside.clear();
-    worker.on_surface.clear();
-    worker.parts.clear();
-  }
+  for (Worker& worker : workers_) std::apply([](auto&... list) { (list.clear(), ...); }, worker.found.all());
   input.parallel.for_ranges(open.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
     for (std::size_t i = begin; i < end && !input.stop.stop_requested(); ++i) {
-      const auto first = sizes_of(workers_[w]);
-      run_task(task_of(pairs_[open[i]], result), result, workers_[w]);
-      const auto last = sizes_of(workers_[w]);
       Outcomes::TaskOutcome outcome{open[i], 0, w, {}};
-      for (std::size_t list = 0; list < list_count; ++list)
-        outcome.ranges[list] = {first[list], last[list] - first[list]};
+      const auto for_each_range = [&](const auto& visit) {
+        const auto found = workers_[w].found.all();
+        for_each_list(found, found, [&](auto number, const auto& list, const auto&) {
+          visit(outcome.ranges[number], static_cast<std::uint32_t>(list.size()));
+        });
+      };
+      for_each_range([](Range& range, std::uint32_t size) { range.first = size; });
+      run_task(task_of(pairs_[open[i]], result), result, workers_[w]);
+      for_each_range([](Range& range, std::uint32_t size) { range.count = size - range.first; });
       outcomes_.add(outcome);
     }
   });
@@ -77,20 +81,13 @@ PenetrationPass::Task PenetrationPass::task_of(ContactJob pair, const DetectResu
   return {pair.a, pair.b, has_contacts ? &*group : nullptr};
 }
 
-std::array<std::uint32_t, PenetrationPass::list_count> PenetrationPass::sizes_of(const Worker& worker) {
-  const CurveLists& curves = worker.curves;
-  return {size_of(worker.inside),  size_of(worker.on_surface), size_of(worker.parts),
-          size_of(curves.curves),  size_of(curves.contacts),   size_of(curves.points),
-          size_of(curves.enclosed)};
-}
-
 void PenetrationPass::run_task(const Task& task, const DetectResult& result, Worker& worker) const {
   const PenetratedObject &inner = objects_[task.inner], &outer = objects_[task.outer];
   if (task.inner != task.outer && outer.is_solid) find_inside(task, result, worker);
   if (with_curves_ && task.inner <= task.outer && task.group != nullptr)
     worker.curve_finder.find({inner.surface, outer.surface, &inner.queried, &outer.queried, inner.is_solid,
                               outer.is_solid, task.inner == task.outer, task.group, &result},
-                             worker.curves);
+                             worker.found.curves);
 }
 
 /// Lists the triangles with contacts, their corners, and their edges that have a point in common with the
@@ -161,35 +158,32 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
       if (v != w && !is_cut(v, w)) worker.sets.join(worker.corner_of[v], worker.corner_of[w], false);
     }
   }
-  const std::size_t first_inside = worker.inside.size(), first_on_surface = worker.on_surface.size();
+  worker.inside.clear();
+  const std::size_t first_part = worker.found.parts.size(), first_on_surface = worker.found.on_surface.size();
   worker.has_contact.assign(around.parts().size(), 0);
   worker.state.resize(corners.size());
   for (std::uint32_t c = 0; c < corners.size(); ++c) {
     const std::uint32_t v = corners[c], root = worker.sets.find(c).root;
     worker.has_contact[around.part_of(v)] = 1;
     if (root == c) worker.state[c] = worker.queries.inside(0, outer.front(), inner.surface.position(v));
-    if (worker.state[root] == Containment::on) worker.on_surface.push_back(v);
+    if (worker.state[root] == Containment::on) worker.found.on_surface.push_back(v);
     if (worker.state[root] != Containment::inside) continue;
     marks[v] |= is_visited;
     worker.inside.push_back(v);
   }
   // A part without contacts is inside or outside as a whole.
-  std::uint32_t contained = 0;
   for (std::uint32_t part = 0; part < around.parts().size(); ++part) {
     if (worker.has_contact[part] != 0) continue;
     const auto [vertex, count] = around.parts()[part];
     if (worker.queries.inside(0, outer.front(), inner.surface.position(vertex)) != Containment::inside)
       continue;
-    ++contained;
-    worker.parts.push_back({inner.queried.id, outer.front().id, vertex, count, false});
+    worker.found.parts.push_back({inner.queried.id, outer.front().id, vertex, count, false});
     marks[vertex] |= is_visited;
     worker.inside.push_back(vertex);
   }
-  if (contained == around.parts().size()) {
-    for (std::size_t i = worker.parts.size() - contained; i < worker.parts.size(); ++i)
-      worker.parts[i].is_whole = true;
-  }
-  for (std::size_t next = first_inside; next < worker.inside.size(); ++next) {
+  const auto contained = std::span(worker.found.parts).subspan(first_part);
+  for (ContainedPart& part : contained) part.is_whole = contained.size() == around.parts().size();
+  for (std::size_t next = 0; next < worker.inside.size(); ++next) {
     const std::uint32_t v = worker.inside[next];
     for (const std::uint32_t t : around.around(v)) {
       for (const std::uint32_t w : inner.surface.triangle(t)) {
@@ -200,32 +194,26 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
     }
   }
   for (const std::uint32_t v : corners) marks[v] = 0;
-  for (std::size_t i = first_inside; i < worker.inside.size(); ++i) marks[worker.inside[i]] = 0;
+  for (const std::uint32_t v : worker.inside) marks[v] = 0;
   worker.has_marks = false;
-  std::sort(worker.inside.begin() + static_cast<std::ptrdiff_t>(first_inside), worker.inside.end());
-  std::sort(worker.on_surface.begin() + static_cast<std::ptrdiff_t>(first_on_surface),
-            worker.on_surface.end());
+  std::ranges::sort(worker.inside);
+  for (const std::uint32_t v : worker.inside)
+    worker.found.penetrations.push_back({inner.queried.id, outer.front().id, v});
+  std::ranges::sort(std::span(worker.found.on_surface).subspan(first_on_surface));
 }
 
 /// Pairs are in canonical order. Reused items move within the lists; new items are written between them. New
 /// penetrations have no depth yet.
 void PenetrationPass::gather() {
   outcomes_.place();
-  outcomes_.move_known<of_penetrations>(penetrations_);
-  outcomes_.move_known<of_surface>(on_surface_);
-  outcomes_.move_known<of_parts>(parts_);
-  outcomes_.move_known<of_curves>(curves_.curves);
-  outcomes_.move_known<of_curve_contacts>(curves_.contacts);
-  outcomes_.move_known<of_curve_points>(curves_.points);
-  outcomes_.move_known<of_enclosed>(curves_.enclosed);
+  const auto lists = found_.all();
+  for_each_list(lists, lists,
+                [&](auto number, auto& list, const auto&) { outcomes_.template move_known<number>(list); });
   groups_.clear();
   new_penetrations_.clear();
   for (std::size_t i = 0; i < outcomes_.size(); ++i) {
-    if (outcomes_.is_known(i)) {
-      move_known_curves(i);
-    } else {
-      gather_found(i);
-    }
+    if (!outcomes_.is_known(i)) copy_found(i);
+    renumber_curves(i);
     const Range inside = outcomes_.ranges(i)[of_penetrations], surface = outcomes_.ranges(i)[of_surface];
     const auto [inner, outer] = pairs_[outcomes_.job(i)];
     if (inside.count + surface.count > 0)
@@ -234,47 +222,30 @@ void PenetrationPass::gather() {
   }
 }
 
-/// The curves and the contacts that they refer to have moved within their lists.
-void PenetrationPass::move_known_curves(std::size_t i) {
-  const Outcomes::Ranges &from = outcomes_.last_ranges(i), &to = outcomes_.ranges(i);
-  move_ranges(i, from);
-  const std::uint32_t change = to[of_curve_contacts].first - from[of_curve_contacts].first;
-  for (std::uint32_t& contact : part_of(curves_.contacts, to[of_curve_contacts])) contact += change;
-}
-
-void PenetrationPass::gather_found(std::size_t i) {
+void PenetrationPass::copy_found(std::size_t i) {
   const Outcomes::TaskOutcome& outcome = outcomes_.tasks_of(i).front();
-  const Outcomes::Ranges& from = outcome.ranges;
   const Outcomes::Ranges& to = outcomes_.ranges(i);
-  const Worker& worker = workers_[outcome.worker];
-  const ContactJob pair = pairs_[outcomes_.job(i)];
-  const ObjectId inner = objects_[pair.a].queried.id, outer = objects_[pair.b].queried.id;
-  for (std::uint32_t k = 0; k < to[of_penetrations].count; ++k) {
-    const std::uint32_t place = to[of_penetrations].first + k;
-    penetrations_[place] = {inner, outer, worker.inside[from[of_penetrations].first + k]};
-    new_penetrations_.push_back(place);
-  }
-  const auto copy = [&](List list, const auto& found, auto& all) {
-    std::copy_n(found.begin() + from[list].first, from[list].count, all.begin() + to[list].first);
-  };
-  copy(of_surface, worker.on_surface, on_surface_);
-  copy(of_parts, worker.parts, parts_);
-  copy(of_curves, worker.curves.curves, curves_.curves);
-  copy(of_curve_contacts, worker.curves.contacts, curves_.contacts);
-  copy(of_curve_points, worker.curves.points, curves_.points);
-  copy(of_enclosed, worker.curves.enclosed, curves_.enclosed);
-  move_ranges(i, from);
+  for_each_list(workers_[outcome.worker].found.all(), found_.all(), [&](auto number, auto& from, auto& list) {
+    std::ranges::copy(part_of(from, outcome.ranges[number]), list.begin() + to[number].first);
+  });
+  for (std::uint32_t k = to[of_penetrations].first; k < to[of_penetrations].end(); ++k)
+    new_penetrations_.push_back(k);
 }
 
-/// Renumbers the ranges of curves that were in other lists, or at other places.
-void PenetrationPass::move_ranges(std::size_t i, const Outcomes::Ranges& from) {
-  const Outcomes::Ranges& to = outcomes_.ranges(i);
+/// The curves, and what they refer to, were in other lists or at other places.
+void PenetrationPass::renumber_curves(std::size_t i) {
+  const bool is_known = outcomes_.is_known(i);
+  const Outcomes::Ranges &from = is_known ? outcomes_.last_ranges(i) : outcomes_.tasks_of(i).front().ranges,
+                         &to = outcomes_.ranges(i);
   const auto change = [&](List list) { return to[list].first - from[list].first; };
-  for (IntersectionCurve& curve : part_of(curves_.curves, to[of_curves])) {
+  for (IntersectionCurve& curve : part_of(found_.curves.curves, to[of_curves])) {
     curve.first_contact += change(of_curve_contacts);
     curve.first_point += change(of_curve_points);
     curve.first_enclosed += change(of_enclosed);
   }
+  if (!is_known) return;
+  for (std::uint32_t& contact : part_of(found_.curves.contacts, to[of_curve_contacts]))
+    contact += change(of_curve_contacts);
 }
 
 bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parallel) {
@@ -293,7 +264,7 @@ void PenetrationPass::find_depths(std::size_t begin, std::size_t end, Worker& wo
   std::array<ElementDistance, DistanceBatch::capacity> distances;
   ObjectId last_outer;
   for (std::size_t i = begin; i < end; ++i) {
-    Penetration& penetration = penetrations_[new_penetrations_[i]];
+    Penetration& penetration = found_.penetrations[new_penetrations_[i]];
     const PenetratedObject& outer = objects_[penetration.object_b.index];
     if (i == begin || penetration.object_b != last_outer) worker.queries.start();
     last_outer = penetration.object_b;
@@ -308,7 +279,7 @@ void PenetrationPass::find_depths(std::size_t begin, std::size_t end, Worker& wo
   std::uint64_t exact_count = 0;
   worker.distances.compute(std::span(found).first(end - begin), distances, exact_count);
   for (std::size_t i = begin; i < end; ++i) {
-    Penetration& penetration = penetrations_[new_penetrations_[i]];
+    Penetration& penetration = found_.penetrations[new_penetrations_[i]];
     const ElementDistance& distance = distances[i - begin];
     penetration.feature = distance.on_b;
     penetration.depth = distance.distance;

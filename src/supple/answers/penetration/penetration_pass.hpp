@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "answers/pass.hpp"
@@ -25,6 +26,20 @@ struct PenetratedObject {
   bool is_solid = false;
 };
 
+/// The lists of the result.
+struct PenetrationLists {
+  std::vector<Penetration> penetrations;
+  std::vector<std::uint32_t> on_surface;
+  std::vector<ContainedPart> parts;
+  CurveLists curves;
+
+  /// In the order of `PenetrationPass::List`.
+  auto all() {
+    return std::tie(penetrations, on_surface, parts, curves.curves, curves.contacts, curves.points,
+                    curves.enclosed);
+  }
+};
+
 /// Finds what objects that intersect or contain each other do: vertices inside solids, contained parts, and
 /// curves.
 ///
@@ -45,21 +60,15 @@ class PenetrationPass {
            bool curves);
 
   std::span<const PenetrationGroup> groups() const { return groups_; }
-  std::span<const Penetration> penetrations() const { return penetrations_; }
-  std::span<const std::uint32_t> vertices_on_surface() const { return on_surface_; }
-  std::span<const ContainedPart> contained_parts() const { return parts_; }
-  const CurveLists& curves() const { return curves_; }
+  std::span<const Penetration> penetrations() const { return found_.penetrations; }
+  std::span<const std::uint32_t> vertices_on_surface() const { return found_.on_surface; }
+  std::span<const ContainedPart> contained_parts() const { return found_.parts; }
+  const CurveLists& curves() const { return found_.curves; }
   /// Calls `visit(list)` for each list of the result.
   template <class Visit>
   void visit_lists(const Visit& visit) {
     visit(groups_);
-    visit(penetrations_);
-    visit(on_surface_);
-    visit(parts_);
-    visit(curves_.curves);
-    visit(curves_.contacts);
-    visit(curves_.points);
-    visit(curves_.enclosed);
+    std::apply([&](auto&... list) { (visit(list), ...); }, found_.all());
   }
 
  private:
@@ -86,10 +95,9 @@ class PenetrationPass {
     CurveFinder curve_finder;
     ObjectQueries queries;
     DistanceBatch distances;
-    CurveLists curves;
-    std::vector<std::uint32_t> inside, on_surface;
-    std::vector<ContainedPart> parts;
+    PenetrationLists found;
     // Scratch of one task.
+    std::vector<std::uint32_t> inside;
     std::vector<std::array<std::uint32_t, 2>> cut_edges;
     std::vector<std::uint32_t> corners, triangles;
     std::vector<std::uint32_t> corner_of;  // by vertex: its place in `corners`, if it is there
@@ -103,13 +111,11 @@ class PenetrationPass {
   void list_pairs(std::span<const ContactJob> jobs);
   Task task_of(ContactJob pair, const DetectResult& result) const;
   void run_task(const Task& task, const DetectResult& result, Worker& worker) const;
-  static std::array<std::uint32_t, list_count> sizes_of(const Worker& worker);
   void find_inside(const Task& task, const DetectResult& result, Worker& worker) const;
   void collect_touched(const Task& task, const DetectResult& result, Worker& worker) const;
   void gather();
-  void move_known_curves(std::size_t i);
-  void gather_found(std::size_t i);
-  void move_ranges(std::size_t i, const Outcomes::Ranges& from);
+  void copy_found(std::size_t i);
+  void renumber_curves(std::size_t i);
   bool find_depths(const StopSignal& stop, const Parallel& parallel);
   void find_depths(std::size_t begin, std::size_t end, Worker& worker);
 
@@ -121,10 +127,7 @@ class PenetrationPass {
   std::vector<std::uint32_t> new_penetrations_;  // whose depths are not known
 
   std::vector<PenetrationGroup> groups_;
-  std::vector<Penetration> penetrations_;
-  std::vector<std::uint32_t> on_surface_;
-  std::vector<ContainedPart> parts_;
-  CurveLists curves_;
+  PenetrationLists found_;
 };
 
 }  // namespace supple
