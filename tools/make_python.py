@@ -138,44 +138,44 @@ def option_type(described, struct, type_, truth):
             "std::vector<KindPair>": "Iterable[tuple[int, int]]"}.get(type_, "Whole" if "uint" in type_ and "<" not in type_ else "")
 
 
-def leaves(described, struct):
-    """The members of a structure and, for nested ones, theirs."""
-    for name, type_, key, doc, truth in described.members(struct):
-        if type_ in OPTION_STRUCTS:
-            yield from leaves(described, type_)
-        else:
-            yield struct, name, type_, key, doc, truth
+def parts_of(described, struct):
+    """The structures of options in a structure, the outer ones first."""
+    inner = [type_ for _, type_, _, _, _ in described.members(struct) if type_ in OPTION_STRUCTS]
+    return inner + [part for each in inner for part in parts_of(described, each)]
 
 
-def options_class(described, struct):
-    items = {}
-    members = described.members(struct)
-    for name, type_, key, doc, truth in members:
-        for each in dict.fromkeys((name, key) if type_ not in OPTION_STRUCTS else (name,)):
-            items[each] = option_type(described, struct, type_, truth), doc
-    inner = [leaf for leaf in leaves(described, struct) if leaf[0] != struct]
-    names = [leaf[1] for leaf in leaves(described, struct)]
-    for owner, name, type_, key, doc, truth in inner:
-        for each in (key, name) if names.count(name) == 1 else (key,):
+def option_items(described, struct):
+    """The type and the description of each keyword of a structure and of its parts."""
+    items, leaves = {}, [(struct, member) for member in described.members(struct)]
+    leaves += [(part, member) for part in parts_of(described, struct) for member in described.members(part)
+               if member[1] not in OPTION_STRUCTS]
+    names = [member[0] for _, member in leaves]
+    for owner, (name, type_, key, doc, truth) in leaves:
+        is_only = owner == struct or names.count(name) == 1
+        aliases = (name,) if type_ in OPTION_STRUCTS else (key, name) if is_only else (key,)
+        for each in aliases:
             items.setdefault(each, (option_type(described, owner, type_, truth), doc))
-    return keywords_class(struct, "Options as keywords.", items)
+    return items
 
 
 def request_class(described):
-    scene = {name: (option_type(described, "SceneOptions", type_, truth), doc)
-             for name, type_, _, doc, truth in described.members("SceneOptions")}
-    items = {}
-    for field in described.structs["DetectRequest"]["fields"]:
-        if field["name"] in scene:
-            items[field["name"]] = scene[field["name"]]
-    for name, type_, key, doc, truth in described.members("ImpactOptions"):
-        items |= {each: (option_type(described, "ImpactOptions", type_, truth), doc) for each in (name, key)}
+    scene = option_items(described, "SceneOptions")
+    fields = [field["name"] for field in described.structs["DetectRequest"]["fields"]]
+    items = {name: scene[name] for name in fields if name in scene} | option_items(described, "ImpactOptions")
     items["max_contacts"] = "Whole | None", "The largest number of contacts of each kind"
-    return keywords_class("DetectRequest", "Keywords of `Scene.detect` and `Scene.search`.", items)
+    return keywords_class(described, "DetectRequest", "Keywords of `Scene.detect` and `Scene.search`.", items,
+                          ["ImpactOptions"])
 
 
-def keywords_class(struct, doc, items, total=False):
-    lines = [f"class {struct.replace('::', '')}(TypedDict{'' if total else ', total=False'}):", f"    {doc!r}", ""]
+def keywords_class(described, struct, doc, items, parts=(), total=False):
+    bases = []
+    for part in parts:  # their keywords come from their classes
+        own = option_items(described, part)
+        if own.items() <= items.items():
+            bases.append(part)
+            items = {name: items[name] for name in items if name not in own}
+    bases = (bases or ["TypedDict"]) + ([] if total else ["total=False"])
+    lines = [f"class {struct.replace('::', '')}({', '.join(bases)}):", f"    {doc!r}", ""]
     for name, (type_, text) in items.items():
         if type_ and name != "self":  # the name of the first parameter of methods
             lines += [f"    {name}: {type_.replace('::', '')}", f"    {text!r}"]
@@ -253,13 +253,13 @@ def generate_types(root, api):
     described = Described(root, api)
     records = [name for name in described.blocks if name not in OPTION_STRUCTS and "Stat" not in name
                and name in described.structs and described.blocks[name].startswith(":")]
-    enums = sorted({each.replace("::", "") for each in re.findall(
-        r"\b[A-Z]\w+(?:::\w+)?(?= \| Literal)", "\n".join(options_class(described, s) for s in OPTION_STRUCTS))})
+    options = [keywords_class(described, each, "Options as keywords.", option_items(described, each),
+                              parts_of(described, each)) for each in OPTION_STRUCTS]
+    enums = {each.replace("::", "") for each in re.findall(r"\b[A-Z]\w+(?:::\w+)?(?= \| Literal)", "\n".join(options))}
     stats = {key: ("float" if type_ == "double" else "int" if type_ in SCALARS else "str", doc)
              for _, type_, key, doc, _ in described.members("StepStats")}
     parts = [HEAD.format(enums="".join(f"    {each},\n" for each in sorted({*enums, "ContactKinds"})))]
-    parts += [options_class(described, each) for each in OPTION_STRUCTS]
-    parts += [request_class(described), keywords_class("StepStats", "`Result.stats`.", stats, True)]
+    parts += [*options, request_class(described), keywords_class(described, "StepStats", "`Result.stats`.", stats, total=True)]
     for each in sorted(records):
         parts += record_class(described, each)
     parts.append(lists_class(described, records))

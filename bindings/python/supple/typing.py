@@ -38,9 +38,9 @@ class ImpactOptions(TypedDict, total=False):
 
     min_separation: Number
     'Continuous contacts: distance at which two elements count as touching'
-    exact: bool | np.bool_ | Literal['report', 'exact']
-    'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
     undecided: bool | np.bool_ | Literal['report', 'exact']
+    'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
+    exact: bool | np.bool_ | Literal['report', 'exact']
     'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
     max_time: Number
     'Continuous contacts: leave out those later in the step, which is from 0 to 1'
@@ -55,13 +55,13 @@ class ObjectOctreeOptions(TypedDict, total=False):
     "Deepest level of the object's octree; the root is level 0"
     leaf_size: Whole
     'A node with at most this many triangles is not split; half as many with continuous contacts or proximity'
-    arity: Whole
-    "Children of a node of the object's octree"
     tree_arity: Whole
     "Children of a node of the object's octree"
-    build: ObjectOctreeBuild | Literal['balanced', 'regular', 'bottom_up']
-    "How the object's octree is built: with equally full leaves (balanced), from the octants of each cell as in the paper (regular), or by merging neighbours (bottom-up)"
+    arity: Whole
+    "Children of a node of the object's octree"
     object_octree: ObjectOctreeBuild | Literal['balanced', 'regular', 'bottom_up']
+    "How the object's octree is built: with equally full leaves (balanced), from the octants of each cell as in the paper (regular), or by merging neighbours (bottom-up)"
+    build: ObjectOctreeBuild | Literal['balanced', 'regular', 'bottom_up']
     "How the object's octree is built: with equally full leaves (balanced), from the octants of each cell as in the paper (regular), or by merging neighbours (bottom-up)"
     rebuild_degraded: bool | np.bool_
     "Rebuild the object's octree when it has become slow because the object deformed"
@@ -70,33 +70,33 @@ class ObjectOctreeOptions(TypedDict, total=False):
 class SceneOctreeOptions(TypedDict, total=False):
     'Options as keywords.'
 
-    max_level: Whole
-    'Deepest level of the scene octree; 0 means the largest possible level, 20'
     scene_octree_max_level: Whole
     'Deepest level of the scene octree; 0 means the largest possible level, 20'
-    expand_at: Whole
-    'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
+    max_level: Whole
+    'Deepest level of the scene octree; 0 means the largest possible level, 20'
     scene_octree_expand_at: Whole
     'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
-    region_sphere_test: RegionSphereTest | Literal['arvo', 'grown_box']
-    "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
+    expand_at: Whole
+    'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
     region_test: RegionSphereTest | Literal['arvo', 'grown_box']
     "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
-    expand_for_large_objects: bool | np.bool_ | Literal['off', 'on']
-    "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
+    region_sphere_test: RegionSphereTest | Literal['arvo', 'grown_box']
+    "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
     scene_octree_expand_for_large: bool | np.bool_ | Literal['off', 'on']
     "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
-    min_level: Whole
-    'Regions above this level of the scene octree always expand; 1 in the paper'
+    expand_for_large_objects: bool | np.bool_ | Literal['off', 'on']
+    "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
     scene_octree_min_level: Whole
     'Regions above this level of the scene octree always expand; 1 in the paper'
-    arity: Whole
-    'Children of a region of the scene octree'
+    min_level: Whole
+    'Regions above this level of the scene octree always expand; 1 in the paper'
     scene_octree_arity: Whole
     'Children of a region of the scene octree'
-    root: Numbers | None
-    'Root region of the scene octree, a cube; without a value it is fitted to the objects'
+    arity: Whole
+    'Children of a region of the scene octree'
     scene_octree_root: Numbers | None
+    'Root region of the scene octree, a cube; without a value it is fitted to the objects'
+    root: Numbers | None
     'Root region of the scene octree, a cube; without a value it is fitted to the objects'
 
 
@@ -113,7 +113,7 @@ class ComparisonOptions(TypedDict, total=False):
     'Refit below the root of an object only the nodes where it may collide with another object'
 
 
-class ObjectOptions(TypedDict, total=False):
+class ObjectOptions(ObjectOctreeOptions, total=False):
     'Options as keywords.'
 
     name: str
@@ -124,9 +124,9 @@ class ObjectOptions(TypedDict, total=False):
     'Triangles of one object that share a vertex: not tested (skip), or tested for intersection beyond what they share (exact)'
     weld: bool | np.bool_
     'Vertices with equal positions count as one, so that a seam that was split for texture coordinates is no border'
-    is_static: bool | np.bool_
-    'The object never moves; static objects are not tested against each other'
     static: bool | np.bool_
+    'The object never moves; static objects are not tested against each other'
+    is_static: bool | np.bool_
     'The object never moves; static objects are not tested against each other'
     margin: Number
     'Proximity: two objects are near where they come within the sum of their margins'
@@ -140,23 +140,9 @@ class ObjectOptions(TypedDict, total=False):
     'Groups, as bits, with which the object is tested'
     octree: ObjectOctreeOptions
     "Shape of the object's octree"
-    max_level: Whole
-    "Deepest level of the object's octree; the root is level 0"
-    leaf_size: Whole
-    'A node with at most this many triangles is not split; half as many with continuous contacts or proximity'
-    tree_arity: Whole
-    "Children of a node of the object's octree"
-    arity: Whole
-    "Children of a node of the object's octree"
-    object_octree: ObjectOctreeBuild | Literal['balanced', 'regular', 'bottom_up']
-    "How the object's octree is built: with equally full leaves (balanced), from the octants of each cell as in the paper (regular), or by merging neighbours (bottom-up)"
-    build: ObjectOctreeBuild | Literal['balanced', 'regular', 'bottom_up']
-    "How the object's octree is built: with equally full leaves (balanced), from the octants of each cell as in the paper (regular), or by merging neighbours (bottom-up)"
-    rebuild_degraded: bool | np.bool_
-    "Rebuild the object's octree when it has become slow because the object deformed"
 
 
-class SceneOptions(TypedDict, total=False):
+class SceneOptions(SceneOctreeOptions, ImpactOptions, ComparisonOptions, total=False):
     'Options as keywords.'
 
     bounding_volume: BoundingVolume | Literal['aabb', 'sphere', 'obb', 'kdop14', 'kdop18', 'kdop26']
@@ -185,52 +171,6 @@ class SceneOptions(TypedDict, total=False):
     'Worker threads; 0 means one per core'
     comparison: ComparisonOptions
     'Options for comparison'
-    scene_octree_max_level: Whole
-    'Deepest level of the scene octree; 0 means the largest possible level, 20'
-    max_level: Whole
-    'Deepest level of the scene octree; 0 means the largest possible level, 20'
-    scene_octree_expand_at: Whole
-    'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
-    expand_at: Whole
-    'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
-    region_test: RegionSphereTest | Literal['arvo', 'grown_box']
-    "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
-    region_sphere_test: RegionSphereTest | Literal['arvo', 'grown_box']
-    "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
-    scene_octree_expand_for_large: bool | np.bool_ | Literal['off', 'on']
-    "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
-    expand_for_large_objects: bool | np.bool_ | Literal['off', 'on']
-    "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
-    scene_octree_min_level: Whole
-    'Regions above this level of the scene octree always expand; 1 in the paper'
-    min_level: Whole
-    'Regions above this level of the scene octree always expand; 1 in the paper'
-    scene_octree_arity: Whole
-    'Children of a region of the scene octree'
-    arity: Whole
-    'Children of a region of the scene octree'
-    scene_octree_root: Numbers | None
-    'Root region of the scene octree, a cube; without a value it is fitted to the objects'
-    root: Numbers | None
-    'Root region of the scene octree, a cube; without a value it is fitted to the objects'
-    min_separation: Number
-    'Continuous contacts: distance at which two elements count as touching'
-    undecided: bool | np.bool_ | Literal['report', 'exact']
-    'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
-    exact: bool | np.bool_ | Literal['report', 'exact']
-    'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
-    max_time: Number
-    'Continuous contacts: leave out those later in the step, which is from 0 to 1'
-    skip_parting: bool | np.bool_
-    'Continuous contacts: leave out elements that are within the separation at the start and part'
-    sphere_fit: SphereFit | Literal['vertices', 'minimal', 'box']
-    "How spheres are fitted: around the middle of the box up to the farthest vertex (vertices), as small as possible (minimal), or from the box by the paper's eq. 3 and 4, which misses contacts (box)"
-    colliding_vertices: bool | np.bool_
-    "Also report the paper's output: the vertices in the colliding leaves of both octrees"
-    descent: Descent | Literal['both_sides', 'one_side_first']
-    "Order in which the children of two nodes are compared: all with all (both sides), or first the children of one node with the other node, as in the paper's Figure 4 (one side first)"
-    lazy_refit: bool | np.bool_ | Literal['off', 'on']
-    'Refit below the root of an object only the nodes where it may collide with another object'
 
 
 class StepOptions(TypedDict, total=False):
@@ -240,7 +180,7 @@ class StepOptions(TypedDict, total=False):
     'Share of its distance at the start that each pair of elements keeps in a safe step'
 
 
-class BroadPhaseOptions(TypedDict, total=False):
+class BroadPhaseOptions(SceneOctreeOptions, total=False):
     'Options as keywords.'
 
     method: BroadPhaseMethod | Literal['automatic', 'octree', 'grid', 'sweep', 'brute']
@@ -251,34 +191,6 @@ class BroadPhaseOptions(TypedDict, total=False):
     'Worker threads; 0 means one per core'
     kind_pairs: Iterable[tuple[int, int]]
     'Wanted pairs of kinds of volumes'
-    scene_octree_max_level: Whole
-    'Deepest level of the scene octree; 0 means the largest possible level, 20'
-    max_level: Whole
-    'Deepest level of the scene octree; 0 means the largest possible level, 20'
-    scene_octree_expand_at: Whole
-    'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
-    expand_at: Whole
-    'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
-    region_test: RegionSphereTest | Literal['arvo', 'grown_box']
-    "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
-    region_sphere_test: RegionSphereTest | Literal['arvo', 'grown_box']
-    "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
-    scene_octree_expand_for_large: bool | np.bool_ | Literal['off', 'on']
-    "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
-    expand_for_large_objects: bool | np.bool_ | Literal['off', 'on']
-    "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
-    scene_octree_min_level: Whole
-    'Regions above this level of the scene octree always expand; 1 in the paper'
-    min_level: Whole
-    'Regions above this level of the scene octree always expand; 1 in the paper'
-    scene_octree_arity: Whole
-    'Children of a region of the scene octree'
-    arity: Whole
-    'Children of a region of the scene octree'
-    scene_octree_root: Numbers | None
-    'Root region of the scene octree, a cube; without a value it is fitted to the objects'
-    root: Numbers | None
-    'Root region of the scene octree, a cube; without a value it is fitted to the objects'
 
 
 class MassSpringOptions(TypedDict, total=False):
@@ -288,9 +200,9 @@ class MassSpringOptions(TypedDict, total=False):
     'How a step is integrated: verlet (second order) and symplectic_euler (first order) are fast and need short steps; backward_euler is slower and stable at any stiffness'
     substeps: Whole
     'Number of equal parts of a step'
-    vertex_mass: Number
-    'Mass of each vertex'
     mass: Number
+    'Mass of each vertex'
+    vertex_mass: Number
     'Mass of each vertex'
     stiffness: Number
     'N/m'
@@ -329,7 +241,7 @@ class MassSpringMotionHandle(TypedDict, total=False):
     'Duration of the movement; afterwards the vertices stay'
 
 
-class MassSpringMotion(TypedDict, total=False):
+class MassSpringMotion(MassSpringOptions, total=False):
     'Options as keywords.'
 
     springs: MassSpringOptions
@@ -346,40 +258,6 @@ class MassSpringMotion(TypedDict, total=False):
     'Time in which the random forces change into others; they act until the end. 0: constant forces'
     seed: Whole | None
     'Seed of the random numbers, instead of the number of the object; each copy adds its own number'
-    integrator: Integrator | Literal['verlet', 'symplectic_euler', 'backward_euler']
-    'How a step is integrated: verlet (second order) and symplectic_euler (first order) are fast and need short steps; backward_euler is slower and stable at any stiffness'
-    substeps: Whole
-    'Number of equal parts of a step'
-    mass: Number
-    'Mass of each vertex'
-    vertex_mass: Number
-    'Mass of each vertex'
-    stiffness: Number
-    'N/m'
-    rest_length: Number
-    ''
-    connect_pieces: bool | np.bool_
-    'Springs also connect the pieces of the mesh, so that they do not drift apart'
-    damping: Number
-    'N s/m'
-    air_friction: Number
-    'N s/m'
-    bending_stiffness: Number
-    'N/m'
-    area_stiffness: Number
-    'N/m'
-    volume_stiffness: Number
-    'Pa'
-    gravity: Numbers
-    'Acceleration of each vertex'
-    max_strain: Number
-    ''
-    yield_strain: Number
-    ''
-    plastic_rate: Number
-    '1/s'
-    threads: Whole
-    'Worker threads; 0 means one per core'
 
 
 class RigidMotion(TypedDict, total=False):
@@ -410,16 +288,16 @@ class ContactResponse(TypedDict, total=False):
     'Largest number of rounds of detection and impulses per step'
 
 
-class SimulationOptions(TypedDict, total=False):
+class SimulationOptions(SceneOctreeOptions, ImpactOptions, ComparisonOptions, total=False):
     'Options as keywords.'
 
     scene: SceneOptions
     'Options of the detection'
     time_step: Number
     'Time from one frame to the next'
-    border: ArrayLike | None
-    'Lowest and highest corner of the box that reflects objects'
     bounds: ArrayLike | None
+    'Lowest and highest corner of the box that reflects objects'
+    border: ArrayLike | None
     'Lowest and highest corner of the box that reflects objects'
     seed: Whole
     'Seed of the random numbers: velocities, forces and rotations'
@@ -431,48 +309,10 @@ class SimulationOptions(TypedDict, total=False):
     'Shape that encloses the objects and the nodes of their octrees'
     broad_phase: BroadPhaseMethod | Literal['automatic', 'octree', 'grid', 'sweep', 'brute']
     'How object pairs are found; all methods find the same pairs'
-    scene_octree_max_level: Whole
-    'Deepest level of the scene octree; 0 means the largest possible level, 20'
-    max_level: Whole
-    'Deepest level of the scene octree; 0 means the largest possible level, 20'
-    scene_octree_expand_at: Whole
-    'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
-    expand_at: Whole
-    'A region of the scene octree expands when this many of its objects fit into regions of half its edge; 0 means 2 for scenes of up to 64 objects, otherwise 96'
-    region_test: RegionSphereTest | Literal['arvo', 'grown_box']
-    "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
-    region_sphere_test: RegionSphereTest | Literal['arvo', 'grown_box']
-    "Test of a region of the scene octree against a sphere: Arvo's test, or the test of the paper (grown box)"
-    scene_octree_expand_for_large: bool | np.bool_ | Literal['off', 'on']
-    "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
-    expand_for_large_objects: bool | np.bool_ | Literal['off', 'on']
-    "Count all objects of a region, also those that dividing it cannot separate (the paper's Figure 2); needs a deepest level from 1 to 6"
-    scene_octree_min_level: Whole
-    'Regions above this level of the scene octree always expand; 1 in the paper'
-    min_level: Whole
-    'Regions above this level of the scene octree always expand; 1 in the paper'
-    scene_octree_arity: Whole
-    'Children of a region of the scene octree'
-    arity: Whole
-    'Children of a region of the scene octree'
-    scene_octree_root: Numbers | None
-    'Root region of the scene octree, a cube; without a value it is fitted to the objects'
-    root: Numbers | None
-    'Root region of the scene octree, a cube; without a value it is fitted to the objects'
     contacts: Kinds
     'Contacts to find: pairs of triangles that intersect (intersection); vertices and faces, and pairs of edges, that touch on their paths from the frame before (continuous); pairs within the margins of their objects (proximity); vertices inside solid objects, contained parts and curves of intersection (penetration, which includes intersection); several of these with commas between them; or none. Bodies that already cut through each other at the start of the paths are found by intersection, not by continuous'
     contact_points: bool | np.bool_
     'Compute the normal and the points of each contact of triangles'
-    min_separation: Number
-    'Continuous contacts: distance at which two elements count as touching'
-    undecided: bool | np.bool_ | Literal['report', 'exact']
-    'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
-    exact: bool | np.bool_ | Literal['report', 'exact']
-    'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
-    max_time: Number
-    'Continuous contacts: leave out those later in the step, which is from 0 to 1'
-    skip_parting: bool | np.bool_
-    'Continuous contacts: leave out elements that are within the separation at the start and part'
     proximity_listing: ProximityListing | Literal['features', 'elements']
     'Proximity: list each pair of closest features once (features), or every vertex and face and every two edges within the margins (elements)'
     element_kinds: ElementKinds | Literal['all', 'vertex_face', 'edge_edge']
@@ -485,14 +325,6 @@ class SimulationOptions(TypedDict, total=False):
     'List the curves in which surfaces intersect, with what they enclose, a normal and a depth, for penetration'
     threads: Whole
     'Worker threads; 0 means one per core'
-    sphere_fit: SphereFit | Literal['vertices', 'minimal', 'box']
-    "How spheres are fitted: around the middle of the box up to the farthest vertex (vertices), as small as possible (minimal), or from the box by the paper's eq. 3 and 4, which misses contacts (box)"
-    colliding_vertices: bool | np.bool_
-    "Also report the paper's output: the vertices in the colliding leaves of both octrees"
-    descent: Descent | Literal['both_sides', 'one_side_first']
-    "Order in which the children of two nodes are compared: all with all (both sides), or first the children of one node with the other node, as in the paper's Figure 4 (one side first)"
-    lazy_refit: bool | np.bool_ | Literal['off', 'on']
-    'Refit below the root of an object only the nodes where it may collide with another object'
 
 
 class BreakOptions(TypedDict, total=False):
@@ -510,7 +342,7 @@ class BreakOptions(TypedDict, total=False):
     'A vertex is NaN or infinite'
 
 
-class AttachOptions(TypedDict, total=False):
+class AttachOptions(BreakOptions, total=False):
     'Options as keywords.'
 
     title: str
@@ -535,19 +367,9 @@ class AttachOptions(TypedDict, total=False):
     ''
     breaks: BreakOptions
     'Events that pause the program'
-    contact_begin: bool | np.bool_
-    'Two objects begin to touch'
-    intersection: bool | np.bool_
-    'Triangles intersect'
-    contacts_above: Whole | None
-    'More contacts than'
-    depth_above: Number | None
-    'A vertex deeper in a solid than'
-    not_finite: bool | np.bool_
-    'A vertex is NaN or infinite'
 
 
-class DetectRequest(TypedDict, total=False):
+class DetectRequest(ImpactOptions, total=False):
     'Keywords of `Scene.detect` and `Scene.search`.'
 
     contacts: Kinds
@@ -564,16 +386,6 @@ class DetectRequest(TypedDict, total=False):
     'Penetration and proximity: also reduce each patch of contacts to a normal, a depth and at most four points, with ids that last from frame to frame'
     curves: bool | np.bool_
     'List the curves in which surfaces intersect, with what they enclose, a normal and a depth, for penetration'
-    min_separation: Number
-    'Continuous contacts: distance at which two elements count as touching'
-    exact: bool | np.bool_ | Literal['report', 'exact']
-    'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
-    undecided: bool | np.bool_ | Literal['report', 'exact']
-    'Continuous contacts that floating point cannot decide: exact arithmetic decides them (exact), or they are reported as within tolerance (report)'
-    max_time: Number
-    'Continuous contacts: leave out those later in the step, which is from 0 to 1'
-    skip_parting: bool | np.bool_
-    'Continuous contacts: leave out elements that are within the separation at the start and part'
     max_contacts: Whole | None
     'The largest number of contacts of each kind'
 
