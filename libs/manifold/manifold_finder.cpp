@@ -28,6 +28,10 @@ std::uint64_t number_of(const FeatureName& name) {
   return (name.first | (0 - no_vertex)) << 32 | name.last;
 }
 
+Vec3d middle_of(const ProximityPair& pair) {
+  return 0.5 * pair.point_a + 0.5 * pair.point_b;
+}
+
 /// Whether the point may be inside a solid. Without branches, because no answer is likely.
 bool may_contain(const WorldObject& object, const Vec3d& point) {
   const Aabb& box = object.box();
@@ -53,7 +57,7 @@ class ManifoldFinder::Collector {
     x_ = scale_ * Vec3d{1 + sign * normal.x * normal.x * w, sign * xy, -sign * normal.x};
     y_ = scale_ * Vec3d{xy, sign + normal.y * normal.y * w, -normal.y};
   }
-  void add(const Vec3d& position, double depth, std::uint32_t record, std::uint32_t part) {
+  void add(const Vec3d& position, double depth, std::uint32_t record) {
     const double x = dot(x_, position), y = dot(y_, position), scaled_depth = scale_ * depth;
     // When several points are deepest, the one that is farthest in a direction comes first. Edges of meshes
     // are seldom at right angles to this direction, so the point is a corner.
@@ -65,9 +69,9 @@ class ManifoldFinder::Collector {
       farthest_ = far;
       depth_of_first_ = scaled_depth;
     }
-    candidates_[count_++] = {x, y, scaled_depth, position, depth, record, part};
+    candidates_[count_++] = {x, y, scaled_depth, record};
   }
-  std::span<Candidate> candidates() const { return {candidates_, count_}; }
+  std::span<const Candidate> candidates() const { return {candidates_, count_}; }
   std::size_t first() const { return first_; }
 
  private:
@@ -184,20 +188,17 @@ ManifoldFinder::Choice ManifoldFinder::choose_points(std::span<const Candidate> 
   return choice;
 }
 
-/// Reduces the candidates to the points of a manifold. `name_of` gives the features of a candidate.
-template <class NameOf>
-void ManifoldFinder::add_manifold(const Manifold& manifold, std::span<const Candidate> candidates,
-                                  std::size_t first, const NameOf& name_of) {
-  const auto [chosen, count] = choose_points(candidates, first);
+/// Reduces the candidates to the points of a manifold. `fill(record, point)` sets the position and the depth
+/// of a point and returns the features there.
+template <class Fill>
+void ManifoldFinder::add_manifold(const Manifold& manifold, const Collector& found, const Fill& fill) {
+  const std::span<const Candidate> candidates = found.candidates();
+  const auto [chosen, count] = choose_points(candidates, found.first());
   Manifold& added = next_.manifolds.emplace_back(manifold);
   added.first_point = static_cast<std::uint32_t>(next_.points.size());
   added.point_count = count;
-  for (const std::size_t i : std::span(chosen).first(count)) {
-    ManifoldPoint& point = next_.points.emplace_back();
-    point.position = candidates[i].position;
-    point.depth = candidates[i].depth;
-    next_.names.push_back(name_of(candidates[i]));
-  }
+  for (const std::size_t i : std::span(chosen).first(count))
+    next_.names.push_back(fill(candidates[i].record, next_.points.emplace_back()));
 }
 
 void ManifoldFinder::add_curve(const DetectResult& result, std::uint32_t index) {
@@ -210,41 +211,43 @@ void ManifoldFinder::add_curve(const DetectResult& result, std::uint32_t index) 
   const std::size_t most =
       points.size() + 6 * contacts.size() + curve.enclosed_count_a + curve.enclosed_count_b;
   Collector collector(candidates_, most, curve.normal, size, -infinity);
+  named_.clear();
+  const auto add = [&](const Vec3d& position, double depth, const ManifoldLists::PointName& name) {
+    collector.add(position, depth, static_cast<std::uint32_t>(named_.size()));
+    named_.push_back({position, depth, name});
+  };
+  const auto name_of = [&](std::uint32_t contact, std::uint64_t point) {
+    const Contact& of = result.contacts[contact];
+    return ManifoldLists::PointName{~point << 32 | of.triangle_a, ~point << 32 | of.triangle_b};
+  };
+  constexpr std::uint64_t any_point = 100;
   const double depth = curve.enclosed_count_a + curve.enclosed_count_b > 0 ? 0 : curve.depth;
   for (std::size_t k = 0; k < points.size(); ++k)
-    collector.add(points[k], depth, contacts[std::min(k, contacts.size() - 1)], Candidate::any_point);
+    add(points[k], depth, name_of(contacts[std::min(k, contacts.size() - 1)], any_point));
   // A branched curve has no points.
   for (const std::uint32_t i : contacts.first(points.empty() ? contacts.size() : 0)) {
     const auto of_contact = result.points_of(result.contacts[i]);
-    for (std::uint32_t k = 0; k < of_contact.size(); ++k) collector.add(of_contact[k].position, depth, i, k);
+    for (std::uint32_t k = 0; k < of_contact.size(); ++k) add(of_contact[k].position, depth, name_of(i, k));
   }
-  const std::size_t on_curve = collector.candidates().size();
+  const std::size_t on_curve = named_.size();
   for (const ContactSide side : {ContactSide::a, ContactSide::b}) {
     const bool is_a = side == ContactSide::a;
     // The vertices that the curve encloses beyond its plane.
     for (const std::uint32_t v : result.enclosed_vertices_of(curve, side)) {
       const Vec3d position = object_of(is_a ? curve.a : curve.b).surface.position(v);
       const double height = dot(position - curve.centroid, is_a ? -curve.normal : curve.normal);
-      if (height > 0 && is_finite(position))
-        collector.add(position, std::min(height, curve.depth), v,
-                      is_a ? Candidate::vertex_of_a : Candidate::vertex_of_b);
+      ManifoldLists::PointName name{ManifoldLists::no_name, ManifoldLists::no_name};
+      name[is_a ? 0 : 1] = number_of({FeatureKind::vertex, v, v});
+      if (height > 0 && is_finite(position)) add(position, std::min(height, curve.depth), name);
     }
   }
-  if (collector.candidates().size() == on_curve && depth != curve.depth) {
-    for (Candidate& candidate : collector.candidates()) candidate.depth = curve.depth;
-  }
+  const bool is_flat = named_.size() == on_curve;
   const Manifold patch{curve.a,      curve.b,     0, {}, ManifoldSource::curve,
                        curve.normal, curve.depth, 0, 0,  index};
-  add_manifold(patch, collector.candidates(), collector.first(), [&](const Candidate& candidate) {
-    if (candidate.part >= Candidate::vertex_of_a) {
-      ManifoldLists::PointName name{ManifoldLists::no_name, ManifoldLists::no_name};
-      name[candidate.part - Candidate::vertex_of_a] =
-          number_of({FeatureKind::vertex, candidate.record, candidate.record});
-      return name;
-    }
-    const Contact& contact = result.contacts[candidate.record];
-    return ManifoldLists::PointName{~std::uint64_t{candidate.part} << 32 | contact.triangle_a,
-                                    ~std::uint64_t{candidate.part} << 32 | contact.triangle_b};
+  add_manifold(patch, collector, [&](std::uint32_t record, ManifoldPoint& point) {
+    point.position = named_[record].position;
+    point.depth = is_flat ? curve.depth : named_[record].depth;
+    return named_[record].name;
   });
 }
 
@@ -288,7 +291,7 @@ void ManifoldFinder::add_patch(std::span<const ProximityPair> pairs, const Conta
     const Direction& direction = direction_of(i);
     const ProximityPair& pair = pairs[direction.pair];
     if (dot(direction.normal, nearest.normal) >= least_cosine)
-      collector.add(0.5 * pair.point_a + 0.5 * pair.point_b, 0 - pair.distance, direction.pair, 0);
+      collector.add(middle_of(pair), 0 - pair.distance, direction.pair);
     else if (direction.is_one_of_several || group.a == group.b ||
              !is_kept_apart(pair, nearest.distance, nearest.normal))
       left_.push_back(direction_of(i));
@@ -303,8 +306,10 @@ void ManifoldFinder::add_patch(std::span<const ProximityPair> pairs, const Conta
     return;
   Manifold patch{group.a, group.b, 0, {}, ManifoldSource::pairs, nearest.normal, 0 - nearest.distance};
   patch.record = group.first_contact + nearest.pair;
-  add_manifold(patch, collector.candidates(), collector.first(), [&](const Candidate& candidate) {
-    const ProximityPair& pair = pairs[candidate.record];
+  add_manifold(patch, collector, [&](std::uint32_t record, ManifoldPoint& point) {
+    const ProximityPair& pair = pairs[record];
+    point.position = middle_of(pair);
+    point.depth = 0 - pair.distance;
     return ManifoldLists::PointName{number_of({pair.kind_a, pair.element_a[0], pair.element_a[1]}),
                                     number_of({pair.kind_b, pair.element_b[0], pair.element_b[1]})};
   });

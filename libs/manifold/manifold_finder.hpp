@@ -76,11 +76,13 @@ class ManifoldFinder : public ManifoldMaker {
   /// A point that may span a manifold.
   struct Candidate {
     double x = 0, y = 0, scaled_depth = 0;  // in the plane at right angles to the normal
+    std::uint32_t record = 0;               // a pair, or a place in `named_`
+  };
+  /// A point of a curve.
+  struct NamedPoint {
     Vec3d position;
     double depth = 0;
-    std::uint32_t record = 0;  // a contact, a pair or a vertex
-    std::uint32_t part = 0;    // the point of the contact, or one of these
-    static constexpr std::uint32_t any_point = 100, vertex_of_a = 101, vertex_of_b = 102;
+    ManifoldLists::PointName name;
   };
   class Collector;
   /// Places of candidates.
@@ -102,9 +104,8 @@ class ManifoldFinder : public ManifoldMaker {
   void add_patch(std::span<const ProximityPair> pairs, const ContactGroup& group, const Direction& nearest,
                  bool has_nearest, std::size_t count, const DirectionOf& direction_of);
   static Choice choose_points(std::span<const Candidate> candidates, std::size_t first);
-  template <class NameOf>
-  void add_manifold(const Manifold& manifold, std::span<const Candidate> candidates, std::size_t first,
-                    const NameOf& name_of);
+  template <class Fill>
+  void add_manifold(const Manifold& manifold, const Collector& found, const Fill& fill);
   ManifoldObject& object_of(ObjectId id);
 
   const World* world_ = nullptr;
@@ -115,6 +116,7 @@ class ManifoldFinder : public ManifoldMaker {
   ManifoldMatcher matcher_;
   TouchingNormals touching_;
   std::vector<Candidate> candidates_;
+  std::vector<NamedPoint> named_;
   double size_ = 0;  // of the coordinates of the points
   bool lists_all_pairs_ = false;
   std::vector<Direction> directions_, left_;  // of the pairs of one group

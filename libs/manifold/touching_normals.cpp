@@ -1,6 +1,7 @@
 #include "manifold/touching_normals.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "geometry/vector.hpp"
 
@@ -20,14 +21,24 @@ void add_once(const Vec3d& direction, std::vector<Vec3d>& directions) {
   if (std::ranges::none_of(directions, is_same)) directions.push_back(direction);
 }
 
+/// Visits the triangles around a feature.
+template <class Visit>
+void for_each_triangle(ManifoldObject& object, const FeatureName& feature, const Visit& visit) {
+  if (feature.kind == FeatureKind::face) return visit(feature.first);
+  for (const std::uint32_t id : object.around(feature.first)) {
+    if (std::ranges::count(object.surface.triangle(id), feature.last) > 0) visit(id);
+  }
+}
+
 }  // namespace
 
 /// The smallest feature of the element that has the point, but for rounding.
-FeatureName TouchingNormals::feature_of(ManifoldObject& object, FeatureKind kind,
-                                        const std::array<std::uint32_t, 2>& element,
-                                        const std::array<double, 3>& weights, const Vec3d& point) {
+FeatureName TouchingNormals::feature_of(ManifoldObject& object, const ProximityPair& pair, bool is_a) {
+  const auto& element = is_a ? pair.element_a : pair.element_b;
+  const auto& weights = is_a ? pair.barycentric_a : pair.barycentric_b;
+  const Vec3d& point = is_a ? pair.point_a : pair.point_b;
   Triangle vertices{element[0], element[1], element[1]};
-  if (kind == FeatureKind::face) vertices = object.surface.triangle(element[0]);
+  if ((is_a ? pair.kind_a : pair.kind_b) == FeatureKind::face) vertices = object.surface.triangle(element[0]);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d position = object.surface.position(vertices[k]);
@@ -56,27 +67,15 @@ void TouchingNormals::list(ManifoldObject& object, const FeatureName& feature, c
     around.corners.push_back(surface.position(to) - point);
     if (from != to) around.edges.push_back(direction_of(surface.position(to) - surface.position(from)));
   };
-  if (feature.kind == FeatureKind::face) {
-    add_triangle(feature.first);
-  } else {
-    add_edge(feature.first, feature.last);
-    if (feature.kind == FeatureKind::edge) around.corners.push_back(surface.position(feature.first) - point);
-    for (const std::uint32_t id : object.around(feature.first)) {
-      const Triangle& triangle = surface.triangle(id);
-      if (std::ranges::find(triangle, feature.last) == triangle.end()) continue;
-      add_triangle(id);
-      for (const std::uint32_t corner : triangle) {
-        if (feature.kind == FeatureKind::vertex) add_edge(feature.first, corner);
-      }
+  if (feature.kind != FeatureKind::face) add_edge(feature.first, feature.last);
+  if (feature.kind == FeatureKind::edge) around.corners.push_back(surface.position(feature.first) - point);
+  for_each_triangle(object, feature, [&](std::uint32_t id) {
+    add_triangle(id);
+    for (const std::uint32_t corner : surface.triangle(id)) {
+      if (feature.kind == FeatureKind::vertex) add_edge(feature.first, corner);
     }
-  }
+  });
   for (const Vec3d& normal : around.normals) around.outward += normal;
-}
-
-/// Lists the surfaces around the points of a pair.
-void TouchingNormals::list(const ProximityPair& pair, ManifoldObject& a, ManifoldObject& b) {
-  list(a, feature_of(a, pair.kind_a, pair.element_a, pair.barycentric_a, pair.point_a), pair.point_a, a_);
-  list(b, feature_of(b, pair.kind_b, pair.element_b, pair.barycentric_b, pair.point_b), pair.point_b, b_);
 }
 
 /// Whether a surface is on the side of a plane to which the normal points, and the inside of a solid, too.
@@ -94,7 +93,8 @@ void TouchingNormals::add_if_apart(const Vec3d& normal) {
 std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, ManifoldObject& a,
                                              ManifoldObject& b) {
   rounding_ = 0x1p-40 * std::max(largest_magnitude(pair.point_a), largest_magnitude(pair.point_b));
-  list(pair, a, b);
+  list(a, feature_of(a, pair, true), pair.point_a, a_);
+  list(b, feature_of(b, pair, false), pair.point_b, b_);
   normals_.clear();
   // An open surface looks at the other one.
   if (dot(a_.outward, b_.outward) > 0 && (a.object->open_edge() || b.object->open_edge())) {
@@ -118,12 +118,9 @@ std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, Manifold
       if (normals_.size() == count) add_if_apart(-normal);
     }
   }
-  if (!normals_.empty()) {
-    Vec3d sum;
-    for (const Vec3d& normal : normals_) sum += normal;
-    if (normals_.size() > 1) normals_.assign(1, direction_of(sum));
-    return normals_;
-  }
+  if (normals_.size() > 1)
+    normals_.assign(1, direction_of(std::accumulate(normals_.begin(), normals_.end(), Vec3d{})));
+  if (!normals_.empty()) return normals_;
   for (const Vec3d& normal : b_.normals) {
     if (is_before(a_, normal)) add_once(normal, normals_);
   }
@@ -143,25 +140,16 @@ std::span<const Vec3d> TouchingNormals::find(const ProximityPair& pair, Manifold
 
 bool TouchingNormals::starts_inside(const ProximityPair& pair, ManifoldObject& a, ManifoldObject& b) {
   const auto starts_in = [](ManifoldObject& object, const FeatureName& feature, const Vec3d& way) {
-    const SurfaceView& surface = object.surface;
-    const auto looks_away = [&](std::uint32_t id) { return dot(unit_normal(surface.corners(id)), way) < 0; };
-    if (feature.kind == FeatureKind::face) return looks_away(feature.first);
-    bool has_face = false;
-    for (const std::uint32_t id : object.around(feature.first)) {
-      const Triangle& triangle = surface.triangle(id);
-      if (std::ranges::find(triangle, feature.last) == triangle.end()) continue;
-      if (!looks_away(id)) return false;
+    bool has_face = false, look_away = true;
+    for_each_triangle(object, feature, [&](std::uint32_t id) {
       has_face = true;
-    }
-    return has_face;
+      look_away = look_away && dot(unit_normal(object.surface.corners(id)), way) < 0;
+    });
+    return has_face && look_away;
   };
   rounding_ = 0;
-  return (a.is_solid &&
-          starts_in(a, feature_of(a, pair.kind_a, pair.element_a, pair.barycentric_a, pair.point_a),
-                    -pair.normal)) ||
-         (b.is_solid &&
-          starts_in(b, feature_of(b, pair.kind_b, pair.element_b, pair.barycentric_b, pair.point_b),
-                    pair.normal));
+  return (a.is_solid && starts_in(a, feature_of(a, pair, true), -pair.normal)) ||
+         (b.is_solid && starts_in(b, feature_of(b, pair, false), pair.normal));
 }
 
 }  // namespace supple

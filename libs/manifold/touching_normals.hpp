@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -48,11 +47,8 @@ class TouchingNormals {
     bool is_solid = false;
   };
 
-  void list(const ProximityPair& pair, ManifoldObject& a, ManifoldObject& b);
   void list(ManifoldObject& object, const FeatureName& feature, const Vec3d& point, Around& around) const;
-  FeatureName feature_of(ManifoldObject& object, FeatureKind kind,
-                         const std::array<std::uint32_t, 2>& element, const std::array<double, 3>& weights,
-                         const Vec3d& point);
+  FeatureName feature_of(ManifoldObject& object, const ProximityPair& pair, bool is_a);
   bool is_before(const Around& around, const Vec3d& normal) const;
   void add_if_apart(const Vec3d& normal);
 
