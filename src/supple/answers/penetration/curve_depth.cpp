@@ -78,6 +78,21 @@ bool CurveFinder::find_separation(std::span<const std::uint32_t> members, Inters
   return is_found;
 }
 
+/// Adds points inside both bodies as probes, next to contacts. Where faces are flush, no vertex is inside.
+void CurveFinder::add_common_points(std::span<const std::uint32_t> members) {
+  constexpr std::size_t most = 4;
+  for (std::size_t k = 0; k < std::min(members.size(), most); ++k) {
+    const std::uint32_t i = members[k * members.size() / std::min(members.size(), most)];
+    const std::uint32_t place = first_place(i);
+    const Vec3d middle = 0.5 * position(place) + 0.5 * position(place + contact(i).point_count - 1);
+    const Vec3d point =
+        middle - 0x1p-24 * largest_magnitude(middle) * (face_normals_[i][0] + face_normals_[i][1]);
+    if (!way_out_.contains(0, point) || !way_out_.contains(1, point)) continue;
+    way_out_.add_probe(0, point);
+    way_out_.add_probe(1, point);
+  }
+}
+
 /// Chooses the direction with the least depth.
 void CurveFinder::find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve) {
   double largest = 0;
@@ -102,6 +117,9 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
       way_out_.add_probe(side, surface_of(side).position(v));
     for (const Vec3d& p : regions_[side].middles()) way_out_.add_probe(side, p);
   }
+
+  if (input_.a_is_solid && input_.b_is_solid && !input_.same_object)
+    add_common_points(members);
 
   list_face_normals(members, false);
   if (directions_.empty()) list_face_normals(members, true);

@@ -96,6 +96,7 @@ class CurveFinder {
   bool separates(std::size_t side, std::uint32_t face, std::span<const std::uint32_t> members) const;
   double length_of(std::uint32_t i) const;
   bool find_separation(std::span<const std::uint32_t> members, IntersectionCurve& curve);
+  void add_common_points(std::span<const std::uint32_t> members);
   void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
 
