@@ -11,6 +11,7 @@
 #include "inspect/octree_statistics.hpp"
 #include "inspect/polytope.hpp"
 #include "inspect/searched_volumes.hpp"
+#include "inspect/validation.hpp"
 #include "mesh/share_vertex.hpp"
 #include "scene/scene_implementation.hpp"
 
@@ -271,7 +272,7 @@ CandidateList SceneInspector::candidates(std::size_t limit) const {
 
 std::string SceneInspector::validate() const {
   const auto& inside = SceneAccess::of(*scene_);
-  const std::string wrong = inside.world.validate();
+  const std::string wrong = fault_of(inside.world);
   return wrong.empty() ? inside.detection.pairs().finder().validate() : wrong;
 }
 

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "core/packed_lanes-inl.hpp"
-#include "geometry/aabb.hpp"
 #include "narrow_phase/moving_box_tests-inl.hpp"
 #include "octree/volumes/triangle_boxes-inl.hpp"
 
@@ -381,20 +380,6 @@ std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const
                                      MovingBoxCache& cache, ElementPairBatches& batches) {
   return HWY_DYNAMIC_DISPATCH(ElementBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, part, same_object,
                                                cache, batches);
-}
-
-std::array<Aabb, 2> moving_face_boxes(const MovingView& view, std::uint32_t face) {
-  std::array<Aabb, 2> boxes;
-  for (const std::uint32_t vertex : view.face_ids[face]) {
-    if (view.inert != nullptr && view.inert[vertex] != 0) return {};
-    for (const bool at_end : {false, true}) {
-      const VertexCorners& corners = at_end ? view.end_corners : view.start_corners;
-      const float* const low = corners.lower + vertex * corners.step;
-      const float* const high = corners.upper + vertex * corners.step;
-      extend(boxes[at_end ? 1 : 0], Aabb{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
-    }
-  }
-  return boxes;
 }
 
 }  // namespace supple

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "core/float_rounding.hpp"
 #include "geometry/aabb.hpp"
@@ -328,43 +327,6 @@ void find_overlapping_children(const ObjectPairView& pair, NodePair node_pair,
   for_each_child_pair(pair, node_pair, mask, [&](int i, int j) {
     children.push_back({node_pair.a, node_pair.b, i, j});
   });
-}
-
-ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles) {
-  ChildPair at;
-  bool above_leaves = true;  // both nodes are nodes, not leaves that wait for the other side
-  for (;;) {
-    const OctreeNode& node_a = pair.a.nodes[at.node_a];
-    const OctreeNode& node_b = pair.b.nodes[at.node_b];
-    at.child_a = node_a.child_with(triangles.a);
-    at.child_b = node_b.child_with(triangles.b);
-    const NodePair nodes{at.node_a, at.node_b, child_bit(at.child_a), child_bit(at.child_b)};
-    std::uint64_t mask = 0;
-    test_children(pair, {&nodes, 1}, &mask);
-    at.apart = (mask >> (node_width * at.child_a + at.child_b) & 1) == 0;
-    if (above_leaves && !pair.is_moving() && pair.a.descent == Descent::one_side_first)
-      at.apart = at.apart || !child_overlaps_node(pair, at.node_a, at.child_a, at.node_b);
-    const bool inner_a = node_a.is_inner(at.child_a), inner_b = node_b.is_inner(at.child_b);
-    if (at.apart || !(inner_a || inner_b)) return at;
-    above_leaves = inner_a && inner_b;
-    if (inner_a) at.node_a = node_a.child_node(at.child_a);
-    if (inner_b) at.node_b = node_b.child_node(at.child_b);
-  }
-}
-
-bool leaf_triangles_apart(const ObjectPairView& pair, const ChildPair& leaves, TrianglePair triangles) {
-  const LeafPair both{triangles.a,
-                      triangles.a + 1,
-                      triangles.b,
-                      triangles.b + 1,
-                      leaf_number(leaves.node_a, leaves.child_a),
-                      leaf_number(leaves.node_b, leaves.child_b)};
-  const auto cache = std::make_unique<LeafBoxCache>();
-  TrianglePairList found;
-  find_triangle_box_pairs({&both, 1}, {pair.a.arrays, pair.a.boxes, pair.a.leaf_vertices},
-                          {pair.b.arrays, pair.b.boxes, pair.b.leaf_vertices}, pair.placement,
-                          pair.same_object, *cache, found);
-  return found.size() == 0;
 }
 
 void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) {

@@ -96,18 +96,12 @@ struct TraversalStats {
 struct ChildPair {
   std::uint32_t node_a = 0, node_b = 0;
   int child_a = 0, child_b = 0;
-  bool apart = false;  ///< the volumes are apart, so the descent ends here
 };
 /// One step of the descent: the pairs of children of two nodes whose volumes overlap.
 void find_overlapping_children(const ObjectPairView& pair, NodePair node_pair,
                                std::vector<ChildPair>& children);
 /// The next nodes of the descent below two children that overlap; nothing below two leaves.
 std::optional<NodePair> nodes_below(const ObjectPairView& pair, const ChildPair& children);
-/// The end of the descent from the roots to two triangles, numbered in octree order: the first children on
-/// the way that are apart, or the two leaves. For one object with itself, `triangles.a < triangles.b`.
-ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles);
-/// Whether `find_triangle_pairs` excludes two triangles of two leaves by their boxes.
-bool leaf_triangles_apart(const ObjectPairView& pair, const ChildPair& leaves, TrianglePair triangles);
 
 /// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
 ///
