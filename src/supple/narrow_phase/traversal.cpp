@@ -279,26 +279,11 @@ PartOfStep ObjectPairView::part_of_step(std::uint32_t node_a, int child_a, std::
   return part;
 }
 
-ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {
-  return {a, b, place(a, b), false, 0, nullptr};
-}
-
-ObjectPairView self_pair_of(const OctreeView& object) {
-  // Both translations are equal, but rounding may still make close positions touch.
-  ObjectPairView pair{object, object, place(object, object), true, 0, nullptr};
-  if (!pair.placement.is_identity()) pair.a.culled = nullptr;
-  return pair;
-}
-
-ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation) {
+ObjectPairView pair_of(const OctreeView& a, const OctreeView& b, double separation) {
   const RelativePlacement placement = place(a, b);
-  return {a, b, placement, false, round_up(separation + placement.slop), nullptr};
-}
-
-ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) {
-  ObjectPairView pair = moving_pair_of(object, object, separation);
-  pair.same_object = true;
-  if (separation > 0 || !pair.placement.is_identity()) pair.a.culled = nullptr;
+  ObjectPairView pair{a, b, placement, &a == &b, round_up(separation + placement.slop), nullptr};
+  // Both translations of one object are equal, but rounding may still make close positions touch.
+  if (pair.same_object && (separation > 0 || !placement.is_identity())) pair.a.culled = nullptr;
   return pair;
 }
 

@@ -75,11 +75,8 @@ struct ObjectPairView {
   PartOfStep part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b, int child_b) const;
   bool is_moving() const { return a.moving.start != nullptr; }
 };
-ObjectPairView pair_of(const OctreeView& a, const OctreeView& b);
-ObjectPairView self_pair_of(const OctreeView& object);
-/// The same for moving views; `separation` ≥ 0, not NaN.
-ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation);
-ObjectPairView moving_self_pair_of(const OctreeView& object, double separation);
+/// One object with itself when both are the same view. `separation` ≥ 0, not NaN, is for moving views.
+ObjectPairView pair_of(const OctreeView& a, const OctreeView& b, double separation = 0);
 
 /// Whether the `NodeVolumes` of two objects that have some are apart.
 bool object_volumes_apart(const ObjectPairView& pair);
