@@ -222,7 +222,7 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
 
 PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoints& b) {
   PairExplanation explanation{.stage = PairStage::triangle_boxes};
-  const QueryBox box_a = box_of(a), box_b = box_of(b);
+  const QueryBox box_a = box_around(a), box_b = box_around(b);
   for (const Vec3d& corner : {box_a.min, box_a.max}) extend(explanation.box_a, corner);
   for (const Vec3d& corner : {box_b.min, box_b.max}) extend(explanation.box_b, corner);
   set_gap(explanation, box_a, box_b);
