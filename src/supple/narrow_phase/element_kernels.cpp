@@ -199,26 +199,8 @@ class ElementTests {
                         part_a_);
     box_b_ = moving_box(child_boxes(b_, leaves.leaf_b / node_width, at_rest_), leaves.leaf_b % node_width,
                         part_b_);
-    const Elements<VerticesThemselves> vertices_a{
-        {},
-        &MovingBoxCache::Side::vertices,
-        {a_.first_vertex[leaves.begin_a], a_.first_vertex[leaves.end_a]}};
-    const Elements<VerticesThemselves> vertices_b{
-        {},
-        &MovingBoxCache::Side::vertices,
-        {b_.first_vertex[leaves.begin_b], b_.first_vertex[leaves.end_b]}};
-    const Elements<VerticesOfElements<3>> faces_a{
-        {a_.face_ids}, &MovingBoxCache::Side::faces, {leaves.begin_a, leaves.end_a}};
-    const Elements<VerticesOfElements<3>> faces_b{
-        {b_.face_ids}, &MovingBoxCache::Side::faces, {leaves.begin_b, leaves.end_b}};
-    const Elements<VerticesOfElements<2>> edges_a{
-        {a_.edge_ids},
-        &MovingBoxCache::Side::edges,
-        {a_.first_edge[leaves.begin_a], a_.first_edge[leaves.end_a]}};
-    const Elements<VerticesOfElements<2>> edges_b{
-        {b_.edge_ids},
-        &MovingBoxCache::Side::edges,
-        {b_.first_edge[leaves.begin_b], b_.first_edge[leaves.end_b]}};
+    const auto [vertices_a, edges_a, faces_a] = elements_of(a_, leaves.begin_a, leaves.end_a);
+    const auto [vertices_b, edges_b, faces_b] = elements_of(b_, leaves.begin_b, leaves.end_b);
     if (part_b_.kinds != ElementKinds::edge_edge) {
       match<Kind::vertex_face>(vertices_a, faces_b);
       if (!same_leaf_) match<Kind::face_vertex>(faces_a, vertices_b);
@@ -247,6 +229,19 @@ class ElementTests {
 
     ElementRange block(std::uint32_t first) const { return {first, std::min(first + leaf_block, range.end)}; }
   };
+
+  /// All elements of a leaf.
+  struct LeafElements {
+    Elements<VerticesThemselves> vertices;
+    Elements<VerticesOfElements<2>> edges;
+    Elements<VerticesOfElements<3>> faces;
+  };
+  static LeafElements elements_of(const MovingView& view, std::uint32_t begin, std::uint32_t end) {
+    using Side = MovingBoxCache::Side;
+    return {{{}, &Side::vertices, {view.first_vertex[begin], view.first_vertex[end]}},
+            {{view.edge_ids}, &Side::edges, {view.first_edge[begin], view.first_edge[end]}},
+            {{view.face_ids}, &Side::faces, {begin, end}}};
+  }
 
   /// The boxes of a block of elements. Maps consecutive blocks to different places of the cache.
   template <class Ids>
