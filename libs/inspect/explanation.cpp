@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -124,6 +126,47 @@ void set_gap(PairExplanation& explanation) {
   for (const Slab& b : slabs_b) consider_boxes(direction(b));
 }
 
+/// The end of the descent from the roots to two triangles, numbered in octree order: the first children on
+/// the way that are apart, or the two leaves. For one object with itself, `triangles.a < triangles.b`.
+struct LastChildren {
+  ChildPair at;
+  bool are_apart = false;
+};
+LastChildren last_children(const ObjectPairView& pair, TrianglePair triangles) {
+  std::vector<ChildPair> overlapping;
+  for (NodePair nodes;;) {
+    const ChildPair at{nodes.a, nodes.b, pair.a.nodes[nodes.a].child_with(triangles.a),
+                       pair.b.nodes[nodes.b].child_with(triangles.b)};
+    overlapping.clear();
+    find_overlapping_children(pair, nodes, overlapping);
+    const bool overlap = std::ranges::any_of(overlapping, [&](const ChildPair& children) {
+      return children.child_a == at.child_a && children.child_b == at.child_b;
+    });
+    const std::optional<NodePair> below = overlap ? nodes_below(pair, at) : std::nullopt;
+    if (!below) return {at, !overlap};
+    nodes = *below;
+  }
+}
+
+/// Whether `Traversal::find_triangle_pairs` excludes two triangles of two leaves by their boxes.
+bool leaf_triangles_apart(const ObjectPairView& pair, const ChildPair& leaves, TrianglePair triangles) {
+  const auto leaf = [](std::uint32_t node, int child) {
+    return node_width * node + static_cast<std::uint32_t>(child);
+  };
+  const LeafPair both{triangles.a,
+                      triangles.a + 1,
+                      triangles.b,
+                      triangles.b + 1,
+                      leaf(leaves.node_a, leaves.child_a),
+                      leaf(leaves.node_b, leaves.child_b)};
+  const auto cache = std::make_unique<LeafBoxCache>();
+  TrianglePairList found;
+  find_triangle_box_pairs({&both, 1}, {pair.a.arrays, pair.a.boxes, pair.a.leaf_vertices},
+                          {pair.b.arrays, pair.b.boxes, pair.b.leaf_vertices}, pair.placement,
+                          pair.same_object, *cache, found);
+  return found.size() == 0;
+}
+
 /// The volumes of an object or a cell, and where they are now.
 struct Volumes {
   Aabb box;
@@ -179,7 +222,7 @@ PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, con
 
 PairExplanation triangle_boxes_apart(const TrianglePoints& a, const TrianglePoints& b) {
   PairExplanation explanation{.stage = PairStage::triangle_boxes};
-  const QueryBox box_a = box_of(a), box_b = box_of(b);
+  const QueryBox box_a = box_around(a), box_b = box_around(b);
   for (const Vec3d& corner : {box_a.min, box_a.max}) extend(explanation.box_a, corner);
   for (const Vec3d& corner : {box_b.min, box_b.max}) extend(explanation.box_b, corner);
   set_gap(explanation, box_a, box_b);
@@ -271,8 +314,8 @@ PairExplanation explain_in_order(const World& world, const Detection& detection,
     return objects_apart(a, b, world.options.bounding_volume,
                          question.is_continuous() || question.has_proximity());
   const ObjectPairView pair = search_view(world, question, job);
-  const ChildPair at = last_children(pair, triangles);
-  if (at.apart) return cells_apart(pair, at, a, b);
+  const auto [at, are_apart] = last_children(pair, triangles);
+  if (are_apart) return cells_apart(pair, at, a, b);
   const TrianglePoints points_a = points_of(a, triangles.a), points_b = points_of(b, triangles.b);
   const bool boxes_apart =
       pair.is_moving() ? moving_faces_apart(pair, triangles) : leaf_triangles_apart(pair, at, triangles);

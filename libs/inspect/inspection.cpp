@@ -11,6 +11,7 @@
 #include "inspect/octree_statistics.hpp"
 #include "inspect/polytope.hpp"
 #include "inspect/searched_volumes.hpp"
+#include "inspect/validation.hpp"
 #include "mesh/share_vertex.hpp"
 #include "scene/scene_implementation.hpp"
 
@@ -122,11 +123,12 @@ const WorldObject& refitted_object(const World& world, const Question& question,
 ObjectPairView search_view(const World& world, const Question& question, const ContactJob& job) {
   OctreeView a = question.view(world[job.a]), b = question.view(world[job.b]);
   a.culled = b.culled = nullptr;
-  if (question.searches_at_rest()) return job.a == job.b ? self_pair_of(a) : pair_of(a, b);
-  const double separation = question.is_continuous()
-                                ? question.separation_of(world[job.a], world[job.b])
-                                : reach_of_margins(world[job.a].options.margin, world[job.b].options.margin);
-  return job.a == job.b ? moving_self_pair_of(a, separation) : moving_pair_of(a, b, separation);
+  const OctreeView& second = job.a == job.b ? a : b;
+  if (question.searches_at_rest()) return pair_of(a, second);
+  return pair_of(a, second,
+                 question.is_continuous()
+                     ? question.separation_of(world[job.a], world[job.b])
+                     : reach_of_margins(world[job.a].options.margin, world[job.b].options.margin));
 }
 
 std::vector<OctreeCell> SceneInspector::cells(ObjectId id, std::optional<std::uint32_t> level) const {
@@ -271,7 +273,7 @@ CandidateList SceneInspector::candidates(std::size_t limit) const {
 
 std::string SceneInspector::validate() const {
   const auto& inside = SceneAccess::of(*scene_);
-  const std::string wrong = inside.world.validate();
+  const std::string wrong = fault_of(inside.world);
   return wrong.empty() ? inside.detection.pairs().finder().validate() : wrong;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "geometry/aabb.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "octree/octree_topology.hpp"
 #include "octree/volumes/moving_boxes.hpp"
@@ -82,6 +84,21 @@ inline std::optional<std::uint64_t> cell_number(const OctreeView& view, std::uin
   constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
   if (!parent || *parent > (most - arity) / arity) return std::nullopt;
   return arity * *parent + 1 + static_cast<std::uint64_t>(child);
+}
+
+/// The boxes of a moving face at both ends of the step, not yet grown or moved; empty when it is inert.
+inline std::array<Aabb, 2> moving_face_boxes(const MovingView& view, std::uint32_t face) {
+  std::array<Aabb, 2> boxes;
+  for (const std::uint32_t vertex : view.face_ids[face]) {
+    if (view.inert != nullptr && view.inert[vertex] != 0) return {};
+    for (const bool at_end : {false, true}) {
+      const VertexCorners& corners = at_end ? view.end_corners : view.start_corners;
+      const float* const low = corners.lower + vertex * corners.step;
+      const float* const high = corners.upper + vertex * corners.step;
+      extend(boxes[at_end ? 1 : 0], Aabb{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
+    }
+  }
+  return boxes;
 }
 
 /// Whether one face stays on one side of the other along some axis, by more than the separation, at both ends

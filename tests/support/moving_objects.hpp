@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "inspect/validation.hpp"
 #include "narrow_phase/traversal.hpp"
 #include "support/soups.hpp"
 
@@ -39,8 +40,8 @@ struct MovingObject {
     buffer.gather(given, elements.vertex_ids(), parallel);
   }
   std::string validate() const {
-    const std::string wrong = elements.validate(octree);
-    return wrong.empty() ? boxes.validate(octree, elements, start, end_positions()) : wrong;
+    const std::string wrong = fault_of(elements, octree);
+    return wrong.empty() ? fault_of(boxes, octree, elements, start, end_positions()) : wrong;
   }
   /// The stored position of a vertex in the user's numbering.
   Vec3d position(std::uint32_t vertex, bool at_end) const {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/random.hpp"
+#include "simulation/random.hpp"
 #include "supple/motion.hpp"
 #include "supple/simulation.hpp"
 #include "supple/types.hpp"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/random.hpp"
 #include "simulation/deforming_forces.hpp"
+#include "simulation/random.hpp"
 #include "supple/motion.hpp"
 #include "supple/simulation.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/random.hpp"
+#include "simulation/random.hpp"
 #include "supple/trigonometry.hpp"
 
 namespace supple {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "broad_phase/automatic_search.hpp"
 #include "broad_phase/grid/grid_search.hpp"
 #include "broad_phase/octree/octree_search.hpp"
 #include "core/error.hpp"
@@ -11,6 +10,46 @@
 
 namespace supple {
 namespace {
+
+/// Runs the octree or the grid in each step, by the rule of `BroadPhaseMethod::automatic`.
+class AutomaticSearch final : public PairSearch {
+ public:
+  AutomaticSearch(BoundingVolume bounding_volume, const SceneOctreeOptions& octree_options)
+      : octree_(bounding_volume, octree_options) {}
+
+  void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override {
+    const bool few_changes = cost_of_change * volumes.changed().size() < volumes.slot_count();
+    steps_with_few_changes_ = few_changes ? steps_with_few_changes_ + 1 : 0;
+    steps_to_grid_ -= steps_to_grid_ != 0;
+    ran_octree_ = steps_with_few_changes_ >= steps_before_build || steps_to_grid_ != 0;
+    if (!ran_octree_ && !grid_.search_unless_crowded(volumes, parallel, found)) {
+      ran_octree_ = true;
+      steps_to_grid_ = steps_between_tries;
+    }
+    if (ran_octree_) octree_.search(volumes, parallel, found);
+  }
+  std::vector<SceneRegion> regions(std::optional<std::uint32_t> slot) const override {
+    return ran_octree_ ? octree_.regions(slot) : std::vector<SceneRegion>();
+  }
+  std::string validate(const VolumeStore& volumes) const override {
+    return ran_octree_ ? octree_.validate(volumes) : std::string();
+  }
+
+ private:
+  /// The octree takes as long for one changed object as the grid takes for this number of objects.
+  static constexpr std::size_t cost_of_change = 24;
+  /// Building the octree takes as long as about two grid searches. After this number of steps with few
+  /// changes, more such steps are likely to follow.
+  static constexpr std::uint32_t steps_before_build = 4;
+  /// The grid sorts all objects into cells before it knows that the scene is too crowded.
+  static constexpr std::uint32_t steps_between_tries = 64;
+
+  OctreeSearch octree_;
+  GridSearch grid_;
+  bool ran_octree_ = false;
+  std::uint32_t steps_with_few_changes_ = 0;  // in a row, until now
+  std::uint32_t steps_to_grid_ = 0;           // until a crowded scene tries the grid again
+};
 
 void refuse(const SceneOctreeOptions& options, const char* method) {
   if (options != SceneOctreeOptions{})

@@ -23,8 +23,16 @@ template <class Tag>
 using Corners = Vector3<Tag>[3];
 
 template <class Tag>
+HWY_INLINE Vector3<Tag> add(const Vector3<Tag>& a, const Vector3<Tag>& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+template <class Tag>
 HWY_INLINE Vector3<Tag> subtract(const Vector3<Tag>& a, const Vector3<Tag>& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class Tag>
+HWY_INLINE Vector3<Tag> scaled(const Vector3<Tag>& v, hn::Vec<Tag> s) {
+  return {hn::Mul(v.x, s), hn::Mul(v.y, s), hn::Mul(v.z, s)};
 }
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> dot(const Vector3<Tag>& a, const Vector3<Tag>& b) {

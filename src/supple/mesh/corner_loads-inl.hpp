@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -157,6 +159,34 @@ HWY_INLINE void read_corners(VertexArray<Source> vertices, const PlacedTriangles
 }
 
 #endif
+
+/// The same for triangles in either precision.
+template <std::uint32_t TrianglePair::*side, class Tag>
+HWY_INLINE void read_corners(const PlacedTriangles& source, const TrianglePair* pairs,
+                             Corners<Tag>& corners) {
+  if (source.arrays.doubles.data != nullptr) {
+    read_corners<side, Tag>(source.arrays.doubles, source, pairs, corners);
+  } else {
+    read_corners<side, Tag>(source.arrays.floats, source, pairs, corners);
+  }
+}
+
+/// Calls `visit(first, part)` for vectors of pairs, which begin at `part`, with the number of the first one.
+/// In the last vector, the first pair fills lanes without a pair.
+template <class Tag, class Visit>
+HWY_INLINE void for_each_vector(Tag tag, const TrianglePair* pairs, std::size_t count, const Visit& visit) {
+  const std::size_t lanes = hn::Lanes(tag);
+  std::array<TrianglePair, hn::MaxLanes(Tag())> last;
+  for (std::size_t first = 0; first < count; first += lanes) {
+    const TrianglePair* part = pairs + first;
+    if (count - first < lanes) {
+      last.fill(pairs[first]);
+      std::copy(part, pairs + count, last.begin());
+      part = last.data();
+    }
+    visit(first, part);
+  }
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace supple

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "core/packed_lanes-inl.hpp"
-#include "geometry/aabb.hpp"
 #include "narrow_phase/moving_box_tests-inl.hpp"
 #include "octree/volumes/triangle_boxes-inl.hpp"
 
@@ -200,26 +199,8 @@ class ElementTests {
                         part_a_);
     box_b_ = moving_box(child_boxes(b_, leaves.leaf_b / node_width, at_rest_), leaves.leaf_b % node_width,
                         part_b_);
-    const Elements<VerticesThemselves> vertices_a{
-        {},
-        &MovingBoxCache::Side::vertices,
-        {a_.first_vertex[leaves.begin_a], a_.first_vertex[leaves.end_a]}};
-    const Elements<VerticesThemselves> vertices_b{
-        {},
-        &MovingBoxCache::Side::vertices,
-        {b_.first_vertex[leaves.begin_b], b_.first_vertex[leaves.end_b]}};
-    const Elements<VerticesOfElements<3>> faces_a{
-        {a_.face_ids}, &MovingBoxCache::Side::faces, {leaves.begin_a, leaves.end_a}};
-    const Elements<VerticesOfElements<3>> faces_b{
-        {b_.face_ids}, &MovingBoxCache::Side::faces, {leaves.begin_b, leaves.end_b}};
-    const Elements<VerticesOfElements<2>> edges_a{
-        {a_.edge_ids},
-        &MovingBoxCache::Side::edges,
-        {a_.first_edge[leaves.begin_a], a_.first_edge[leaves.end_a]}};
-    const Elements<VerticesOfElements<2>> edges_b{
-        {b_.edge_ids},
-        &MovingBoxCache::Side::edges,
-        {b_.first_edge[leaves.begin_b], b_.first_edge[leaves.end_b]}};
+    const auto [vertices_a, edges_a, faces_a] = elements_of(a_, leaves.begin_a, leaves.end_a);
+    const auto [vertices_b, edges_b, faces_b] = elements_of(b_, leaves.begin_b, leaves.end_b);
     if (part_b_.kinds != ElementKinds::edge_edge) {
       match<Kind::vertex_face>(vertices_a, faces_b);
       if (!same_leaf_) match<Kind::face_vertex>(faces_a, vertices_b);
@@ -248,6 +229,19 @@ class ElementTests {
 
     ElementRange block(std::uint32_t first) const { return {first, std::min(first + leaf_block, range.end)}; }
   };
+
+  /// All elements of a leaf.
+  struct LeafElements {
+    Elements<VerticesThemselves> vertices;
+    Elements<VerticesOfElements<2>> edges;
+    Elements<VerticesOfElements<3>> faces;
+  };
+  static LeafElements elements_of(const MovingView& view, std::uint32_t begin, std::uint32_t end) {
+    using Side = MovingBoxCache::Side;
+    return {{{}, &Side::vertices, {view.first_vertex[begin], view.first_vertex[end]}},
+            {{view.edge_ids}, &Side::edges, {view.first_edge[begin], view.first_edge[end]}},
+            {{view.face_ids}, &Side::faces, {begin, end}}};
+  }
 
   /// The boxes of a block of elements. Maps consecutive blocks to different places of the cache.
   template <class Ids>
@@ -381,20 +375,6 @@ std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const
                                      MovingBoxCache& cache, ElementPairBatches& batches) {
   return HWY_DYNAMIC_DISPATCH(ElementBoxPairs)(leaf_pairs.data(), leaf_pairs.size(), a, b, part, same_object,
                                                cache, batches);
-}
-
-std::array<Aabb, 2> moving_face_boxes(const MovingView& view, std::uint32_t face) {
-  std::array<Aabb, 2> boxes;
-  for (const std::uint32_t vertex : view.face_ids[face]) {
-    if (view.inert != nullptr && view.inert[vertex] != 0) return {};
-    for (const bool at_end : {false, true}) {
-      const VertexCorners& corners = at_end ? view.end_corners : view.start_corners;
-      const float* const low = corners.lower + vertex * corners.step;
-      const float* const high = corners.upper + vertex * corners.step;
-      extend(boxes[at_end ? 1 : 0], Aabb{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
-    }
-  }
-  return boxes;
 }
 
 }  // namespace supple

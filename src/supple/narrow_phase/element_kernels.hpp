@@ -130,7 +130,4 @@ std::uint64_t find_element_box_pairs(std::span<const LeafPair> leaf_pairs, const
                                      const MovingView& b, const PartOfStep& part, bool same_object,
                                      MovingBoxCache& cache, ElementPairBatches& batches);
 
-/// The boxes of a moving face at both ends of the step, not yet grown or moved; empty when it is inert.
-std::array<Aabb, 2> moving_face_boxes(const MovingView& view, std::uint32_t face);
-
 }  // namespace supple

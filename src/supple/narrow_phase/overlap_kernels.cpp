@@ -231,10 +231,6 @@ HWY_INLINE BoxMask mask_of(std::uint64_t bits) {
   return hn::LoadMaskBits(BoxTag(), bytes);
 }
 
-HWY_INLINE Aabb box_at(const LeafBoxes& leaf, std::uint32_t i) {
-  return {{leaf.min_x[i], leaf.min_y[i], leaf.min_z[i]}, {leaf.max_x[i], leaf.max_y[i], leaf.max_z[i]}};
-}
-
 #if HWY_TARGET <= HWY_AVX2
 
 /// Writes a pair of each chosen triangle with `other`, and returns their number. Always writes a whole vector
@@ -351,7 +347,7 @@ class LeafTests {
       const NumberVec triangles = hn::Iota(NumberTag(), first_other + i);
       for (std::uint64_t rest = some_ones; rest != 0; rest &= rest - 1) {
         const auto one = static_cast<std::uint32_t>(std::countr_zero(rest));
-        BoxMask hits = hn::And(overlapping(BoxTag(), others, i, box_at(ones, one)), wanted);
+        BoxMask hits = hn::And(overlapping(BoxTag(), others, i, ones.box(one)), wanted);
         if constexpr (each_with_later) {
           const std::uint32_t not_later = one < i ? 0 : std::min(one - i + 1, lanes);
           hits = hn::And(hits, mask_of(all_lanes << not_later & all_lanes));

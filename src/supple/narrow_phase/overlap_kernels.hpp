@@ -31,6 +31,8 @@ struct alignas(64) LeafBoxes {
   float max_x[leaf_block], max_y[leaf_block], max_z[leaf_block];
   std::uint64_t triangles;  ///< bit i: triangle i exists and is not inert
   std::uint32_t size;       ///< number of triangles, with the inert ones
+
+  Aabb box(std::uint32_t i) const { return {{min_x[i], min_y[i], min_z[i]}, {max_x[i], max_y[i], max_z[i]}}; }
 };
 
 /// A cache of the boxes of recent blocks; most are soon used again. Valid for one pair of objects at their

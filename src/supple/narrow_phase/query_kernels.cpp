@@ -17,25 +17,25 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Squared distances of the boxes from `first` on, a vector of them.
 template <class Tag, class Boxes>
-HWY_INLINE hn::Vec<Tag> squares_of(Tag d, const PointBounds& point, const Boxes& boxes, std::size_t first) {
+HWY_INLINE hn::Vec<Tag> squares_of(Tag d, const Aabb& point, const Boxes& boxes, std::size_t first) {
   const auto gap = [&](const float* low, const float* high, float point_low, float point_high) HWY_ATTR {
     const auto below = hn::Sub(hn::Load(d, low + first), hn::Set(d, point_high));
     const auto above = hn::Sub(hn::Set(d, point_low), hn::Load(d, high + first));
     return hn::Max(hn::Max(below, above), hn::Zero(d));
   };
-  const auto x = gap(boxes.min_x, boxes.max_x, point.low.x, point.high.x);
-  const auto y = gap(boxes.min_y, boxes.max_y, point.low.y, point.high.y);
-  const auto z = gap(boxes.min_z, boxes.max_z, point.low.z, point.high.z);
+  const auto x = gap(boxes.min_x, boxes.max_x, point.min.x, point.max.x);
+  const auto y = gap(boxes.min_y, boxes.max_y, point.min.y, point.max.y);
+  const auto z = gap(boxes.min_z, boxes.max_z, point.min.z, point.max.z);
   return hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
 }
 
-void SquaredDistances(const PointBounds& point, const ChildBoxes& boxes, float* squares) {
+void SquaredDistances(const Aabb& point, const ChildBoxes& boxes, float* squares) {
   const hn::CappedTag<float, node_width> d;
   for (std::size_t i = 0; i < node_width; i += hn::Lanes(d))
     hn::StoreU(squares_of(d, point, boxes, i), d, squares + i);
 }
 
-std::uint64_t NearTriangles(const PointBounds& point, const LeafBoxes& boxes, float limit) {
+std::uint64_t NearTriangles(const Aabb& point, const LeafBoxes& boxes, float limit) {
   const hn::CappedTag<float, 16> d;
   std::uint64_t near = 0;
   for (std::size_t i = 0; i < boxes.size; i += hn::Lanes(d))
@@ -103,10 +103,10 @@ HWY_EXPORT(NearTriangles);
 HWY_EXPORT(RayBounds);
 HWY_EXPORT(TrianglesOnRay);
 
-void squared_distances(const PointBounds& point, const ChildBoxes& boxes, std::array<float, 8>& squares) {
+void squared_distances(const Aabb& point, const ChildBoxes& boxes, std::array<float, 8>& squares) {
   HWY_DYNAMIC_DISPATCH(SquaredDistances)(point, boxes, squares.data());
 }
-std::uint64_t near_triangles(const PointBounds& point, const LeafBoxes& boxes, float limit) {
+std::uint64_t near_triangles(const Aabb& point, const LeafBoxes& boxes, float limit) {
   return HWY_DYNAMIC_DISPATCH(NearTriangles)(point, boxes, limit);
 }
 void ray_bounds(const RaySlabs& ray, const ChildBoxes& boxes, std::array<double, 8>& bounds) {

@@ -1,25 +1,43 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <span>
 
 #include "narrow_phase/overlap_kernels.hpp"
 #include "octree/octree_node.hpp"
+#include "supple/queries.hpp"
 
 // Tests of a point, a box or a ray against the boxes of eight children or of a block of triangles. They never
 // exclude a box that the exact test would not.
 namespace supple {
 
-/// A point as the boxes of an object see it: between two floats on each axis.
-struct PointBounds {
-  Vec3f low, high;
-};
+/// The box of no points.
+inline QueryBox no_box() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+}
+/// Adds a box, or a point as both corners.
+inline void extend(QueryBox& box, const Vec3d& min, const Vec3d& max) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = std::min(box.min[axis], min[axis]);
+    box.max[axis] = std::max(box.max[axis], max[axis]);
+  }
+}
+inline QueryBox box_around(std::span<const Vec3d> points) {
+  QueryBox box = no_box();
+  for (const Vec3d& p : points) extend(box, p, p);
+  return box;
+}
 
-/// Writes the squared distances of the point and the boxes of eight children, in single precision: they are
-/// below 1 + 2^-20 times the exact ones, plus 2^-140. Those of missing children are unspecified.
-void squared_distances(const PointBounds& point, const ChildBoxes& boxes, std::array<float, 8>& squares);
+/// Writes the squared distances of a point, which is in the box `point`, and the boxes of eight children, in
+/// single precision: they are below 1 + 2^-20 times the exact ones, plus 2^-140. Those of missing children
+/// are unspecified.
+void squared_distances(const Aabb& point, const ChildBoxes& boxes, std::array<float, 8>& squares);
 /// The triangles of a block whose boxes have such a squared distance of at most `limit`.
-std::uint64_t near_triangles(const PointBounds& point, const LeafBoxes& boxes, float limit);
+std::uint64_t near_triangles(const Aabb& point, const LeafBoxes& boxes, float limit);
 
 /// A ray as the boxes of an object see it: its origin between two points, and the reciprocals of its
 /// direction. An axis along which the direction is too small or too large for reciprocals is `unlimited`.

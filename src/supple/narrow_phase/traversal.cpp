@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "core/float_rounding.hpp"
 #include "geometry/aabb.hpp"
@@ -280,26 +279,11 @@ PartOfStep ObjectPairView::part_of_step(std::uint32_t node_a, int child_a, std::
   return part;
 }
 
-ObjectPairView pair_of(const OctreeView& a, const OctreeView& b) {
-  return {a, b, place(a, b), false, 0, nullptr};
-}
-
-ObjectPairView self_pair_of(const OctreeView& object) {
-  // Both translations are equal, but rounding may still make close positions touch.
-  ObjectPairView pair{object, object, place(object, object), true, 0, nullptr};
-  if (!pair.placement.is_identity()) pair.a.culled = nullptr;
-  return pair;
-}
-
-ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation) {
+ObjectPairView pair_of(const OctreeView& a, const OctreeView& b, double separation) {
   const RelativePlacement placement = place(a, b);
-  return {a, b, placement, false, round_up(separation + placement.slop), nullptr};
-}
-
-ObjectPairView moving_self_pair_of(const OctreeView& object, double separation) {
-  ObjectPairView pair = moving_pair_of(object, object, separation);
-  pair.same_object = true;
-  if (separation > 0 || !pair.placement.is_identity()) pair.a.culled = nullptr;
+  ObjectPairView pair{a, b, placement, &a == &b, round_up(separation + placement.slop), nullptr};
+  // Both translations of one object are equal, but rounding may still make close positions touch.
+  if (pair.same_object && (separation > 0 || !placement.is_identity())) pair.a.culled = nullptr;
   return pair;
 }
 
@@ -328,43 +312,6 @@ void find_overlapping_children(const ObjectPairView& pair, NodePair node_pair,
   for_each_child_pair(pair, node_pair, mask, [&](int i, int j) {
     children.push_back({node_pair.a, node_pair.b, i, j});
   });
-}
-
-ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles) {
-  ChildPair at;
-  bool above_leaves = true;  // both nodes are nodes, not leaves that wait for the other side
-  for (;;) {
-    const OctreeNode& node_a = pair.a.nodes[at.node_a];
-    const OctreeNode& node_b = pair.b.nodes[at.node_b];
-    at.child_a = node_a.child_with(triangles.a);
-    at.child_b = node_b.child_with(triangles.b);
-    const NodePair nodes{at.node_a, at.node_b, child_bit(at.child_a), child_bit(at.child_b)};
-    std::uint64_t mask = 0;
-    test_children(pair, {&nodes, 1}, &mask);
-    at.apart = (mask >> (node_width * at.child_a + at.child_b) & 1) == 0;
-    if (above_leaves && !pair.is_moving() && pair.a.descent == Descent::one_side_first)
-      at.apart = at.apart || !child_overlaps_node(pair, at.node_a, at.child_a, at.node_b);
-    const bool inner_a = node_a.is_inner(at.child_a), inner_b = node_b.is_inner(at.child_b);
-    if (at.apart || !(inner_a || inner_b)) return at;
-    above_leaves = inner_a && inner_b;
-    if (inner_a) at.node_a = node_a.child_node(at.child_a);
-    if (inner_b) at.node_b = node_b.child_node(at.child_b);
-  }
-}
-
-bool leaf_triangles_apart(const ObjectPairView& pair, const ChildPair& leaves, TrianglePair triangles) {
-  const LeafPair both{triangles.a,
-                      triangles.a + 1,
-                      triangles.b,
-                      triangles.b + 1,
-                      leaf_number(leaves.node_a, leaves.child_a),
-                      leaf_number(leaves.node_b, leaves.child_b)};
-  const auto cache = std::make_unique<LeafBoxCache>();
-  TrianglePairList found;
-  find_triangle_box_pairs({&both, 1}, {pair.a.arrays, pair.a.boxes, pair.a.leaf_vertices},
-                          {pair.b.arrays, pair.b.boxes, pair.b.leaf_vertices}, pair.placement,
-                          pair.same_object, *cache, found);
-  return found.size() == 0;
 }
 
 void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) {

@@ -75,11 +75,8 @@ struct ObjectPairView {
   PartOfStep part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b, int child_b) const;
   bool is_moving() const { return a.moving.start != nullptr; }
 };
-ObjectPairView pair_of(const OctreeView& a, const OctreeView& b);
-ObjectPairView self_pair_of(const OctreeView& object);
-/// The same for moving views; `separation` ≥ 0, not NaN.
-ObjectPairView moving_pair_of(const OctreeView& a, const OctreeView& b, double separation);
-ObjectPairView moving_self_pair_of(const OctreeView& object, double separation);
+/// One object with itself when both are the same view. `separation` ≥ 0, not NaN, is for moving views.
+ObjectPairView pair_of(const OctreeView& a, const OctreeView& b, double separation = 0);
 
 /// Whether the `NodeVolumes` of two objects that have some are apart.
 bool object_volumes_apart(const ObjectPairView& pair);
@@ -96,18 +93,12 @@ struct TraversalStats {
 struct ChildPair {
   std::uint32_t node_a = 0, node_b = 0;
   int child_a = 0, child_b = 0;
-  bool apart = false;  ///< the volumes are apart, so the descent ends here
 };
 /// One step of the descent: the pairs of children of two nodes whose volumes overlap.
 void find_overlapping_children(const ObjectPairView& pair, NodePair node_pair,
                                std::vector<ChildPair>& children);
 /// The next nodes of the descent below two children that overlap; nothing below two leaves.
 std::optional<NodePair> nodes_below(const ObjectPairView& pair, const ChildPair& children);
-/// The end of the descent from the roots to two triangles, numbered in octree order: the first children on
-/// the way that are apart, or the two leaves. For one object with itself, `triangles.a < triangles.b`.
-ChildPair last_children(const ObjectPairView& pair, TrianglePair triangles);
-/// Whether `find_triangle_pairs` excludes two triangles of two leaves by their boxes.
-bool leaf_triangles_apart(const ObjectPairView& pair, const ChildPair& leaves, TrianglePair triangles);
 
 /// Octree against octree, both descended at once. Holds the scratch memory of one worker, kept between calls.
 ///

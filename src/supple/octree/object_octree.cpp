@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include "geometry/aabb.hpp"
@@ -279,6 +280,17 @@ std::size_t ObjectOctree::refit_children(std::uint32_t n, const VertexBuffer& ve
   }
   if (volumes_) volumes_->refit(refitted(vertices, {}, false), n, n + 1);
   return node.size();
+}
+
+std::size_t ObjectOctree::bytes() const {
+  return nodes_.capacity() * sizeof(OctreeNode) + boxes_.capacity() * sizeof(ChildBoxes) +
+         (volumes_ ? volumes_->bytes() : 0) + triangles_.capacity() * sizeof(Triangle) +
+         (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
+          first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity() +
+          first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity()) *
+             sizeof(std::uint32_t) +
+         cell_numbers_.capacity() * sizeof(std::uint64_t) + leaf_corners_.capacity() + is_stale_.capacity() +
+         is_current_.capacity();
 }
 
 }  // namespace supple

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -113,9 +112,11 @@ class ObjectOctree {
     return volumes_ ? volumes_->sphere(volumes_->object(), 0) : BoundingSphere{};
   }
 
-  /// The empty string when every invariant holds and every volume encloses its triangles; otherwise what is
-  /// wrong. Spheres fitted to boxes need not enclose and are not checked.
-  std::string validate(const VertexBuffer& vertices, std::span<const std::uint8_t> inert) const;
+  const ObjectOctreeOptions& options() const { return options_; }
+  /// Spheres fitted to boxes need not enclose their triangles.
+  bool spheres_enclose() const {
+    return bounding_volume_ == BoundingVolume::sphere && sphere_fit_ != SphereFit::box;
+  }
   /// Memory without that of the positions.
   std::size_t bytes() const;
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <tuple>
 
 #include "core/bucket_sort.hpp"
@@ -83,36 +82,6 @@ SurfaceElements::SurfaceElements(const ObjectOctree& octree) {
     }
     first_edge_.push_back(static_cast<std::uint32_t>(edges_.size()));
   }
-}
-
-std::string SurfaceElements::validate(const ObjectOctree& octree) const {
-  const std::span<const Triangle> triangles = faces_;
-  if (first_vertex_.size() != triangles.size() + 1 || first_edge_.size() != triangles.size() + 1 ||
-      octree.triangles().size() != triangles.size() || octree.vertex_count() != vertex_ids_.size()) {
-    return "elements of another octree";
-  }
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      if (vertex_ids_[triangles[t][corner]] != octree.triangles()[t][corner])
-        return "faces are not the octree's triangles";
-    }
-  }
-  std::set<Edge> seen;
-  std::uint32_t vertices = 0, edges = 0;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (first_vertex_[t] != vertices || first_edge_[t] != edges) return "owned elements do not follow on";
-    for (std::uint32_t corner = 0; corner < 3; ++corner) {
-      const std::uint32_t p = triangles[t][corner], q = triangles[t][(corner + 1) % 3];
-      if (p > vertices) return "vertices are not in the order of first use";
-      vertices = std::max(vertices, p + 1);
-      const Edge edge{std::min(p, q), std::max(p, q)};
-      if (p == q || !seen.insert(edge).second) continue;
-      if (edges >= edges_.size() || edges_[edges] != edge) return "edges are not in the order of first use";
-      ++edges;
-    }
-  }
-  if (first_vertex_.back() != vertices || first_edge_.back() != edges) return "elements are missing";
-  return edges == edges_.size() ? "" : "edges of no triangle";
 }
 
 }  // namespace supple

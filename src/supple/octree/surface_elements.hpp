@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "supple/mesh.hpp"
@@ -61,8 +60,6 @@ class SurfaceElements {
            (vertex_ids_.capacity() + first_vertex_.capacity() + first_edge_.capacity()) *
                sizeof(std::uint32_t);
   }
-  /// The empty string when every invariant holds; otherwise what is wrong. O(n log n).
-  std::string validate(const ObjectOctree& octree) const;
 
  private:
   void number_by_first_use(const ObjectOctree& octree);

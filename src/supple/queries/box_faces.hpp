@@ -10,17 +10,6 @@
 
 namespace supple {
 
-inline QueryBox box_of(const TrianglePoints& corners) {
-  QueryBox box{corners[0], corners[0]};
-  for (const Vec3d& corner : corners) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.min[axis] = std::min(box.min[axis], corner[axis]);
-      box.max[axis] = std::max(box.max[axis], corner[axis]);
-    }
-  }
-  return box;
-}
-
 /// Whether the boxes share no point.
 inline bool are_apart(const QueryBox& p, const QueryBox& q) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -48,7 +37,7 @@ class BoxFaces {
 
   /// Whether the triangle shares a point with the box: a corner inside, or a point on a face.
   bool meet(const TrianglePoints& triangle) const {
-    if (are_apart(box_of(triangle), box_)) return false;
+    if (are_apart(box_around(triangle), box_)) return false;
     const auto has = [&](const Vec3d& p) {
       return box_.min.x <= p.x && p.x <= box_.max.x && box_.min.y <= p.y && p.y <= box_.max.y &&
              box_.min.z <= p.z && p.z <= box_.max.z;

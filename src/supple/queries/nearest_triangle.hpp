@@ -137,7 +137,7 @@ class NearestTriangle {
     return are_farther(planes_[0], {point_, point_}, 0, planes_[1], box, depth, distance_ * (1 + 0x1p-48));
   }
   bool is_behind(const TrianglePoints& corners) const {
-    return is_behind(box_of(corners), depth_of(corners));
+    return is_behind(box_around(corners), depth_of(corners));
   }
   double depth_of(const TrianglePoints& corners) const {
     return std::min(

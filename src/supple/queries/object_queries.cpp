@@ -76,12 +76,12 @@ double slop_of(const QueriedObject& object, const Vec3d& point, int axis) {
 
 }  // namespace
 
-PointBounds seen_by(const QueriedObject& object, const Vec3d& point) {
-  PointBounds bounds;
+Aabb seen_by(const QueriedObject& object, const Vec3d& point) {
+  Aabb bounds;
   for (int axis = 0; axis < 3; ++axis) {
     const double local = point[axis] - object.view.translation[axis], slop = slop_of(object, point, axis);
-    bounds.low[axis] = round_down(local - slop);
-    bounds.high[axis] = round_up(local + slop);
+    bounds.min[axis] = round_down(local - slop);
+    bounds.max[axis] = round_up(local + slop);
   }
   return bounds;
 }
@@ -160,7 +160,7 @@ QueryBox QueriedObject::child_box(std::uint32_t node, int child) const {
 /// Writes squares of lower bounds of the distances of the point and the children; NaN for those behind the
 /// plane, if there is one.
 void ObjectQueries::bound_children(const QueriedObject& object, std::uint32_t node, const Vec3d& point,
-                                   const PointBounds& seen, const NearestTriangle& nearest,
+                                   const Aabb& seen, const NearestTriangle& nearest,
                                    std::array<double, node_width>& bounds) {
   std::array<float, node_width> squares;
   squared_distances(seen, object.view.boxes[node], squares);
@@ -252,7 +252,7 @@ std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObjec
     const std::uint32_t index = object_index;
     const QueriedObject& object = objects[index];
     if (!(object_bound <= nearest.limit())) break;
-    const PointBounds seen = seen_by(object, point);
+    const Aabb seen = seen_by(object, point);
     // Distances in single precision hardly tell its triangles apart, so the search needs a plane.
     if (is_far(object.box, object_bound, far_ratio)) {
       const std::optional<std::uint32_t> first = frontmost_triangle(object, point);
@@ -324,7 +324,7 @@ void ObjectQueries::visit_triangles_on_ray(std::span<const QueriedObject> object
           const auto on_ray = [&](const LeafBoxes& boxes) { return triangles_on_ray(slabs, boxes, limit); };
           visit_leaf(index, object, leaf, first, end, on_ray, [&](std::uint32_t t) {
             const TrianglePoints corners = object.corners(t);
-            if (line && line->misses(box_of(corners))) return;
+            if (line && line->misses(box_around(corners))) return;
             ++decided_;
             if (const auto parameter = RayParameter::find(ray, corners, used_exact))
               visit(TriangleOnRay{*parameter, index, object.triangle_ids[t]});
@@ -363,7 +363,7 @@ void ObjectQueries::cast_all(std::span<const QueriedObject> objects, const Ray& 
 template <class Visit>
 void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& object,
                                       const QueryBox& region, const Visit& visit) {
-  const Aabb box{seen_by(object, region.min).low, seen_by(object, region.max).high};
+  const Aabb box{seen_by(object, region.min).min, seen_by(object, region.max).max};
   const auto chosen = [&](const LeafBoxes& boxes) { return overlapping_triangles(box, boxes); };
   nodes_.clear();
   if (!object.view.nodes.empty()) nodes_.push_back(0);

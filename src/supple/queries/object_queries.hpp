@@ -46,8 +46,9 @@ constexpr double far_ratio = 0x1p8;
 /// Whether something at this distance is farther away than `ratio` times the size of the box.
 bool is_far(const Aabb& box, double distance, double ratio);
 
-/// A point as the boxes of an object's octree see it: in single precision, without the translation.
-PointBounds seen_by(const QueriedObject& object, const Vec3d& point);
+/// A point as the boxes of an object's octree see it: between two floats on each axis, without the
+/// translation.
+Aabb seen_by(const QueriedObject& object, const Vec3d& point);
 
 /// A triangle, by object in a list of objects and in octree order, and at most its distance to a point.
 struct NearTriangle {
@@ -113,7 +114,7 @@ class ObjectQueries {
   void visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf, std::uint32_t begin,
                   std::uint32_t end, const Chosen& chosen, const Visit& visit);
   static void bound_children(const QueriedObject& object, std::uint32_t node, const Vec3d& point,
-                             const PointBounds& seen, const NearestTriangle& nearest,
+                             const Aabb& seen, const NearestTriangle& nearest,
                              std::array<double, node_width>& bounds);
   static std::optional<std::uint32_t> frontmost_triangle(const QueriedObject& object, const Vec3d& point);
   /// Calls `visit` with the triangles of an object whose boxes overlap the region, in octree order within

@@ -249,13 +249,4 @@ std::vector<ObjectPair> World::all_pairs() const {
   return pairs;
 }
 
-std::string World::validate() const {
-  for (const Slot& slot : slots_) {
-    if (slot.object == nullptr) continue;
-    if (const std::string wrong = slot.object->validate(); !wrong.empty())
-      return slot.object->options.name + ": " + wrong;
-  }
-  return {};
-}
-
 }  // namespace supple

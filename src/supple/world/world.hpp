@@ -92,8 +92,6 @@ class World {
   /// search; jobs of objects that did not move search nothing. `boxes` are those of the slots. Views of
   /// rebuilt octrees are invalid afterwards.
   Work rebuild_degraded(std::span<const ContactJob> jobs, std::span<const Aabb> boxes);
-  /// What is wrong with the octrees; empty when they are valid.
-  std::string validate() const;
 
   const SceneOptions options;
   const Parallel parallel;

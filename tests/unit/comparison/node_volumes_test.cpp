@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "inspect/polytope.hpp"
+#include "inspect/validation.hpp"
 #include "octree/object_octree.hpp"
 #include "supple/inspection.hpp"
 #include "supple/models.hpp"
@@ -22,7 +23,7 @@ struct Built {
       : octree(mesh.positions, mesh.triangles, {.leaf_size = 1}, volume, SphereFit::vertices) {
     vertices.assign(mesh.positions, Parallel(1));
     EXPECT_TRUE(octree.refit(vertices, {}, Parallel(2)));
-    EXPECT_EQ(octree.validate(vertices, {}), "");
+    EXPECT_EQ(fault_of(octree, vertices, {}), "");
   }
   /// Sum of the surfaces of all children.
   double surface() const {

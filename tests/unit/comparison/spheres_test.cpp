@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "inspect/validation.hpp"
 #include "octree/object_octree.hpp"
 #include "supple/models.hpp"
 #include "support/soups.hpp"
@@ -142,7 +143,7 @@ TEST(SphereFit, ReachesTheFarthestVertexOfModels) {
          {ObjectOctreeBuild::balanced, ObjectOctreeBuild::regular, ObjectOctreeBuild::bottom_up}) {
       for (const SphereFit fit : {SphereFit::vertices, SphereFit::minimal}) {
         const Tree tree(mesh, fit, {.leaf_size = 4, .build = build});
-        ASSERT_EQ(tree.octree.validate(tree.vertices, {}), "") << model;
+        ASSERT_EQ(fault_of(tree.octree, tree.vertices, {}), "") << model;
         const BoundingSphere sphere = tree.octree.sphere();
         const double exact = farthest(mesh, sphere.center);
         EXPECT_GE(sphere.radius, exact);
@@ -182,7 +183,7 @@ TEST(SphereFit, EnclosesDegeneratePositions) {
                         {.leaf_size = 1 + random.below(9),
                          .arity = 2u << random.below(3),
                          .build = ObjectOctreeBuild::regular});
-        EXPECT_EQ(tree.octree.validate(tree.vertices, tree.inert), "") << count << " way " << way;
+        EXPECT_EQ(fault_of(tree.octree, tree.vertices, tree.inert), "") << count << " way " << way;
         if (HasFailure()) return;
       }
     }

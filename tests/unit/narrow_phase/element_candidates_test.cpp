@@ -55,8 +55,8 @@ Candidate candidate(const MovingObject& a, const MovingObject& b, bool same, Ele
 }
 
 ObjectPairView pair_view(const MovingObject& a, const MovingObject& b, double separation) {
-  return &a == &b ? moving_self_pair_of(a.view(), separation)
-                  : moving_pair_of(a.view(), b.view(), separation);
+  const OctreeView view = a.view();
+  return &a == &b ? pair_of(view, view, separation) : pair_of(view, b.view(), separation);
 }
 
 /// Fails if a pair is found twice.
@@ -373,7 +373,7 @@ void expect_known_contacts(const std::string& name, const std::string& frame_0, 
     CandidateSet not_found = touching;
     Traversal traversal;
     TraversalStats stats;
-    traversal.find_element_pairs(moving_self_pair_of(view, 0), {}, stats,
+    traversal.find_element_pairs(pair_of(view, view), {}, stats,
                                  [&](ElementPairKind pair_kind, std::span<const ElementPair> pairs) {
                                    for (const ElementPair& p : pairs)
                                      not_found.erase(candidate(object, object, true, pair_kind, p));
@@ -401,7 +401,7 @@ TEST(ElementCandidates, LeaveOutWhatCulledChildrenCannotTouch) {
     Traversal traversal;
     TraversalStats stats;
     std::vector<NodePair> roots;
-    const ObjectPairView pair = moving_self_pair_of(view, separation);
+    const ObjectPairView pair = pair_of(view, view, separation);
     traversal.refine(pair, {}, roots);
     for (const NodePair& root : roots) {
       traversal.find_element_pairs(pair, root, stats,

@@ -104,7 +104,8 @@ TrianglePoints points_of(const Object& object, std::uint32_t triangle) {
 /// boxes enclose the triangles but not the corners of their boxes, so with them only intersecting triangles
 /// must be found.
 void expect_candidates(const Object& a, const Object& b, bool same_object, double slack) {
-  const ObjectPairView pair = same_object ? self_pair_of(a.view()) : pair_of(a.view(), b.view());
+  const OctreeView view = a.view();
+  const ObjectPairView pair = same_object ? pair_of(view, view) : pair_of(view, b.view());
   PairSet must = overlapping_boxes(a, b, same_object, 0);
   if (a.octree.volumes() != nullptr)
     std::erase_if(must, [&](const auto& found) {

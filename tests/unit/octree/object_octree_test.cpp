@@ -1,5 +1,6 @@
 #include "octree/object_octree.hpp"
 #include "inspect/octree_statistics.hpp"
+#include "inspect/validation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +42,7 @@ struct Built {
     const Parallel parallel(threads);
     vertices.assign(soup.positions, parallel);
     octree.refit(vertices, {}, parallel);
-    return octree.validate(vertices, {});
+    return fault_of(octree, vertices, {});
   }
 
   ObjectOctree octree;
@@ -153,7 +154,7 @@ TEST(ObjectOctree, FloatAndDoublePositionsGiveTheSameBoxesForFloatValues) {
   vertices.assign(singles, parallel);
   EXPECT_FALSE(vertices.is_double());
   EXPECT_TRUE(built.octree.refit(vertices, {}, parallel));
-  EXPECT_EQ(built.octree.validate(vertices, {}), "");
+  EXPECT_EQ(fault_of(built.octree, vertices, {}), "");
   EXPECT_EQ(built.octree.box(), box);
 }
 
@@ -214,7 +215,7 @@ TEST(ObjectOctree, InertTrianglesAreInNoBox) {
     inert[t] = user == 10 || user == 20;
   }
   EXPECT_TRUE(built.octree.refit(built.vertices, inert, parallel));
-  EXPECT_EQ(built.octree.validate(built.vertices, inert), "");
+  EXPECT_EQ(fault_of(built.octree, built.vertices, inert), "");
   EXPECT_LT(built.octree.box().max.y, 2);
 }
 
@@ -229,7 +230,7 @@ TEST(ObjectOctree, BorrowedPositionsGiveTheSameVolumes) {
     borrowed.borrow(soup.positions);
     EXPECT_EQ(borrowed.bytes(), 0u);
     EXPECT_TRUE(built.octree.refit(borrowed, {}, Parallel(2)));
-    EXPECT_EQ(built.octree.validate(borrowed, {}), "");
+    EXPECT_EQ(fault_of(built.octree, borrowed, {}), "");
     EXPECT_EQ(built.octree.box(), box);
   }
 }
@@ -269,7 +270,7 @@ TEST(ObjectOctree, ValidateFindsAStaleBox) {
   EXPECT_EQ(built.refit(soup), "");
   soup.positions[17].x += 5;  // outside every leaf
   built.vertices.assign(soup.positions, Parallel(1));
-  EXPECT_NE(built.octree.validate(built.vertices, {}), "");
+  EXPECT_NE(fault_of(built.octree, built.vertices, {}), "");
 }
 
 TEST(ObjectOctree, StridedPositions) {

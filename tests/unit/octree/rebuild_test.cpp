@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "inspect/octree_statistics.hpp"
+#include "inspect/validation.hpp"
 #include "octree/object_octree.hpp"
 #include "octree/surface_elements.hpp"
 #include "support/soups.hpp"
@@ -42,14 +43,14 @@ struct Tree {
     refit();
   }
   void expect_valid() const {
-    EXPECT_EQ(octree.validate(vertices, inert), "");
+    EXPECT_EQ(fault_of(octree, vertices, inert), "");
     for (std::size_t t = 0; t < octree.triangles().size(); ++t) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::uint32_t user = mesh.triangles[octree.triangle_ids()[t]][corner];
         ASSERT_EQ(user, octree.triangles()[t][corner]);
       }
     }
-    EXPECT_EQ(SurfaceElements(octree).validate(octree), "");
+    EXPECT_EQ(fault_of(SurfaceElements(octree), octree), "");
   }
 
   TriangleMesh mesh;

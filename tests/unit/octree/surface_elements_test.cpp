@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "inspect/validation.hpp"
 #include "octree/object_octree.hpp"
 #include "support/soups.hpp"
 
@@ -17,7 +18,7 @@ ObjectOctree octree_of(const TriangleMesh& mesh, std::uint32_t leaf_size = 8) {
 TEST(SurfaceElements, OfNothing) {
   const ObjectOctree octree = octree_of({});
   const SurfaceElements elements(octree);
-  EXPECT_EQ(elements.validate(octree), "");
+  EXPECT_EQ(fault_of(elements, octree), "");
   EXPECT_EQ(elements.vertex_count(), 0u);
   EXPECT_EQ(elements.edge_count(), 0u);
 }
@@ -27,7 +28,7 @@ TEST(SurfaceElements, EdgesAreTheDistinctPairsOfVertices) {
   const TriangleMesh mesh{"", std::vector<Vec3d>(8), {{0, 1, 2}, {2, 1, 3}, {0, 1, 2}, {4, 5, 4}, {6, 6, 6}}};
   const ObjectOctree octree = octree_of(mesh);
   const SurfaceElements elements(octree);
-  EXPECT_EQ(elements.validate(octree), "");
+  EXPECT_EQ(fault_of(elements, octree), "");
   EXPECT_EQ(elements.vertex_count(), 7u);
   std::set<Edge> found;
   for (const Edge& edge : elements.edges()) {
@@ -43,7 +44,7 @@ TEST(SurfaceElements, FormRangesOverAnyMesh) {
     const TriangleMesh sheet = crumpled_sheet(30, 20, 0.02, 3);
     const ObjectOctree octree = octree_of(sheet, leaf_size);
     const SurfaceElements elements(octree);
-    EXPECT_EQ(elements.validate(octree), "");
+    EXPECT_EQ(fault_of(elements, octree), "");
     EXPECT_EQ(elements.edge_count(), 30u * 21 + 31 * 20 + 30 * 20);
     EXPECT_EQ(elements.vertices_of(0, static_cast<std::uint32_t>(sheet.triangles.size())).size(), 31u * 21);
   }
@@ -56,14 +57,14 @@ TEST(SurfaceElements, FormRangesOverAnyMesh) {
       mesh.triangles.push_back({random.below(vertices), random.below(vertices), random.below(vertices)});
     }
     const ObjectOctree octree = octree_of(mesh, 1 + random.below(9));
-    EXPECT_EQ(SurfaceElements(octree).validate(octree), "");
+    EXPECT_EQ(fault_of(SurfaceElements(octree), octree), "");
   }
 }
 
 TEST(SurfaceElements, OfAnotherOctreeAreWrong) {
   const ObjectOctree octree = octree_of(crumpled_sheet(3, 3, 0.02, 3));
   const ObjectOctree other = octree_of(random_soup(18, 1, 0.1, 1));
-  EXPECT_NE(SurfaceElements(octree).validate(other), "");
+  EXPECT_NE(fault_of(SurfaceElements(octree), other), "");
 }
 
 }  // namespace supple::surface_elements_test

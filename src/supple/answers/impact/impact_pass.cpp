@@ -160,8 +160,7 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
   const double distance = searched_distance(job);
-  ObjectPairView pair =
-      &a == &b ? moving_self_pair_of(a.view, distance) : moving_pair_of(a.view, b.view, distance);
+  ObjectPairView pair = pair_of(a.view, b.view, distance);
   pair.growth = growth_of_distance(job);
   pair.kept_share = share_of_approach();
   pair.any_parts = search_ == Search::free;

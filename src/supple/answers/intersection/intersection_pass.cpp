@@ -72,7 +72,7 @@ bool IntersectionPass::run(const PassInput& input, std::span<const IntersectedOb
 
 ObjectPairView IntersectionPass::view_of_job(std::uint32_t job) const {
   const auto [a, b] = jobs_[job];
-  return a == b ? self_pair_of(objects_[a].view) : pair_of(objects_[a].view, objects_[b].view);
+  return pair_of(objects_[a].view, objects_[b].view);
 }
 
 void IntersectionPass::run_task(std::size_t task, Worker& worker) {

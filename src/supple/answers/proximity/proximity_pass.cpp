@@ -102,8 +102,7 @@ bool ProximityPass::run(const PassInput& input, std::span<const MovingObject> ob
 ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
   const MovingObject& a = objects_[jobs_[job].a];
   const MovingObject& b = objects_[jobs_[job].b];
-  const double reach = reach_of_margins(a.margin, b.margin);
-  ObjectPairView pair = &a == &b ? moving_self_pair_of(a.view, reach) : moving_pair_of(a.view, b.view, reach);
+  ObjectPairView pair = pair_of(a.view, b.view, reach_of_margins(a.margin, b.margin));
   pair.kinds = search_.kinds;
   pair.with_crossings = search_.kinds == ElementKinds::all;
   return pair;

@@ -29,9 +29,6 @@ HWY_INLINE Vector point(const PointsBlock& block, std::size_t vertex, std::size_
   const auto& axes = block.points[vertex];
   return {hn::Load(d, axes[0] + first), hn::Load(d, axes[1] + first), hn::Load(d, axes[2] + first)};
 }
-HWY_INLINE Vector scaled(const Vector& v, Doubles s) {
-  return {hn::Mul(v.x, s), hn::Mul(v.y, s), hn::Mul(v.z, s)};
-}
 HWY_INLINE Vector backwards(const Vector& v) {
   return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
 }

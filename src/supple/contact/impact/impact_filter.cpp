@@ -28,12 +28,6 @@ HWY_INLINE Vector load(const RelativeMotionBlock& block, std::size_t row, std::s
   hn::LoadInterleaved4(Lanes(), block.rows[row][first], vector.x, vector.y, vector.z, unused);
   return vector;
 }
-HWY_INLINE Vector add(const Vector& a, const Vector& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Vector scaled(const Vector& a, Floats s) {
-  return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
 /// a b + c and c - a b with two roundings, which all instruction sets have. So the same pairs are undecided
 /// on every machine, which is visible where these are reported.
 HWY_INLINE Floats sum_with_product(Floats a, Floats b, Floats c) {

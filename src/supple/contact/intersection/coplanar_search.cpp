@@ -25,9 +25,6 @@ HWY_INLINE Doubles set(double value) {
 HWY_INLINE Doubles mix(Doubles a, Doubles b, Doubles t) {
   return hn::Add(hn::Mul(hn::Sub(set(1), t), a), hn::Mul(t, b));
 }
-HWY_INLINE Vector add(const Vector& a, const Vector& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
 HWY_INLINE Vector mix(const Vector& a, const Vector& b, Doubles t) {
   return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
 }

@@ -3,9 +3,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <array>
-
 #include "contact/intersection/chords-inl.hpp"
 #include "contact/intersection/crossing_segments.hpp"
 #include "contact/intersection/meeting_point.hpp"
@@ -99,16 +96,6 @@ HWY_INLINE void store(const Vector& v, double (*rows)[CrossingSegments::capacity
   hn::StoreU(v.z, Tag(), rows[2] + first);
 }
 
-template <std::uint32_t TrianglePair::*side>
-HWY_INLINE void read_corners_of(const PlacedTriangles& source, const TrianglePair* pairs,
-                                Corners<Tag>& corners) {
-  if (source.arrays.doubles.data != nullptr) {
-    read_corners<side, Tag>(source.arrays.doubles, source, pairs, corners);
-  } else {
-    read_corners<side, Tag>(source.arrays.floats, source, pairs, corners);
-  }
-}
-
 /// Returns the lanes in which both ends are known.
 HWY_INLINE Mask find_ends(const Corners<Tag>& a, const Corners<Tag>& b, std::size_t first, Rows& rows) {
   const Sides<Tag> sides_a(b, a), sides_b(a, b);
@@ -140,25 +127,17 @@ HWY_INLINE Mask find_ends(const Corners<Tag>& a, const Corners<Tag>& b, std::siz
 
 std::uint64_t find_segments(const PlacedTriangles& a, const PlacedTriangles& b, const TrianglePair* pairs,
                             std::size_t count, Rows& rows) {
-  const std::size_t lanes = hn::Lanes(Tag());
   std::uint64_t known = 0;
-  std::array<TrianglePair, hn::MaxLanes(Tag())> last;
-  for (std::size_t first = 0; first < count; first += lanes) {
-    const TrianglePair* part = pairs + first;
-    if (count - first < lanes) {
-      last.fill(pairs[first]);
-      std::copy(part, pairs + count, last.begin());
-      part = last.data();
-    }
+  for_each_vector(Tag(), pairs, count, [&](std::size_t first, const TrianglePair* part) HWY_ATTR {
     Corners<Tag> corners_a, corners_b;
-    read_corners_of<&TrianglePair::a>(a, part, corners_a);
-    read_corners_of<&TrianglePair::b>(b, part, corners_b);
+    read_corners<&TrianglePair::a, Tag>(a, part, corners_a);
+    read_corners<&TrianglePair::b, Tag>(b, part, corners_b);
     const Mask has_ends = find_ends(corners_a, corners_b, first, rows);
     Vector normal;
     const Mask has_normal = find_normals<Tag>(corners_a, corners_b, normal);
     store(normal, rows.normals, first);
     known |= mask_bits(Tag(), hn::And(has_ends, has_normal)) << first;
-  }
+  });
   return known;
 }
 

@@ -3,9 +3,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <array>
-
 #include "contact/intersection/chords-inl.hpp"
 #include "contact/intersection/pair_filter.hpp"
 #include "core/packed_lanes-inl.hpp"
@@ -44,21 +41,13 @@ HWY_INLINE PairVerdicts filter(VertexArray<SourceA> vertices_a, VertexArray<Sour
                                const PlacedTriangles& a, const PlacedTriangles& b, const TrianglePair* pairs,
                                std::size_t count) {
   using Tag = hn::CappedTag<Scalar, 16>;
-  const std::size_t lanes = hn::Lanes(Tag());
   PairVerdicts verdicts;
-  std::array<TrianglePair, 16> last;
-  for (std::size_t first = 0; first < count; first += lanes) {
-    const TrianglePair* part = pairs + first;
-    if (count - first < lanes) {
-      last.fill(pairs[first]);
-      std::copy(part, pairs + count, last.begin());
-      part = last.data();
-    }
+  for_each_vector(Tag(), pairs, count, [&](std::size_t first, const TrianglePair* part) HWY_ATTR {
     Corners<Tag> corners_a, corners_b;
     read_corners<&TrianglePair::a, Tag>(vertices_a, a, part, corners_a);
     read_corners<&TrianglePair::b, Tag>(vertices_b, b, part, corners_b);
     decide<Tag>(corners_a, corners_b, first, verdicts);
-  }
+  });
   if (count < pair_filter_capacity) {
     const std::uint64_t in_use = (std::uint64_t{1} << count) - 1;
     verdicts.apart &= in_use;

@@ -5,8 +5,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
-
 #include "geometry/vector3-inl.hpp"
 #include "mesh/corner_loads-inl.hpp"
 
@@ -57,23 +55,14 @@ HWY_INLINE Vector3<Tag> rough_closest(const Corners<Tag>& c, hn::Mask<Tag>& is_i
   return {sum(c[0].x, u.x, v.x), sum(c[0].y, u.y, v.y), sum(c[0].z, u.z, v.z)};
 }
 
-template <class Source>
-HWY_INLINE void bound(VertexArray<Source> vertices, const Vec3d& point, const PlacedTriangles& triangles,
-                      const TrianglePair* list, std::size_t count, double* lower, double* upper) {
+void BoundDistances(const Vec3d& point, const PlacedTriangles& triangles, const TrianglePair* list,
+                    std::size_t count, double* lower, double* upper) {
   using Tag = hn::CappedTag<double, 8>;
   const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
   const Vector3<Tag> p{hn::Set(d, point.x), hn::Set(d, point.y), hn::Set(d, point.z)};
-  std::array<TrianglePair, 8> last;
-  for (std::size_t first = 0; first < count; first += lanes) {
-    const TrianglePair* part = list + first;
-    if (count - first < lanes) {
-      last.fill(list[first]);
-      std::copy(part, list + count, last.begin());
-      part = last.data();
-    }
+  for_each_vector(d, list, count, [&](std::size_t first, const TrianglePair* part) HWY_ATTR {
     Corners<Tag> corners;
-    read_corners<&TrianglePair::a, Tag>(vertices, triangles, part, corners);
+    read_corners<&TrianglePair::a, Tag>(triangles, part, corners);
     for (auto& corner : corners) corner = subtract<Tag>(corner, p);
     hn::Mask<Tag> is_in_triangle;
     const Vector3<Tag> normal = rough_closest<Tag>(corners, is_in_triangle);
@@ -94,16 +83,7 @@ HWY_INLINE void bound(VertexArray<Source> vertices, const Vec3d& point, const Pl
     hn::StoreU(hn::IfThenElse(hn::And(is_certain, is_in_triangle),
                               hn::Add(hn::Mul(length, hn::Set(d, 1 + 0x1p-48)), slack), hn::Inf(d)),
                d, upper + first);
-  }
-}
-
-void BoundDistances(const Vec3d& point, const PlacedTriangles& triangles, const TrianglePair* list,
-                    std::size_t count, double* lower, double* upper) {
-  if (triangles.arrays.doubles.data != nullptr) {
-    bound(triangles.arrays.doubles, point, triangles, list, count, lower, upper);
-  } else {
-    bound(triangles.arrays.floats, point, triangles, list, count, lower, upper);
-  }
+  });
 }
 
 }  // namespace

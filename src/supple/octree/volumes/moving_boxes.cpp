@@ -106,45 +106,4 @@ std::size_t MovingBoxes::bytes() const {
   return bytes;
 }
 
-namespace {
-
-/// Checks the boxes of all children at one end of the step.
-std::string check_moment(const ObjectOctree& octree, const SurfaceElements& elements, const ChildBoxes* boxes,
-                         const VertexBuffer& positions, std::span<const std::uint8_t> inert) {
-  constexpr float greatest = std::numeric_limits<float>::max();
-  const auto nodes = octree.nodes();
-  std::vector<ChildBoxes> expected(nodes.size());
-  refit_child_boxes(nodes, expected.data(), [&](const OctreeNode& node, int child) {
-    Aabb box;
-    for (const Triangle& face : elements.faces().subspan(node.first_triangle[child], node.size(child))) {
-      for (const std::uint32_t vertex : face) {
-        if (inert[vertex] == 0) extend(box, positions[vertex]);
-      }
-    }
-    for (int axis = 0; axis < 3 && !box.empty(); ++axis) {
-      box.min[axis] = std::max(box.min[axis], -greatest);
-      box.max[axis] = std::min(box.max[axis], greatest);
-    }
-    return box;
-  });
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    for (int child = 0; child < node_width; ++child) {
-      if (child_box(boxes[n], child) != child_box(expected[n], child))
-        return "the box of a child is not that of its vertices";
-    }
-  }
-  return "";
-}
-
-}  // namespace
-
-std::string MovingBoxes::validate(const ObjectOctree& octree, const SurfaceElements& elements,
-                                  const VertexBuffer& start, const VertexBuffer& end) const {
-  std::vector<std::uint8_t> inert(start.size());
-  for (std::uint32_t v = 0; v < inert.size(); ++v) inert[v] = !is_finite(start[v]) || !is_finite(end[v]);
-  std::string wrong = check_moment(octree, elements, start_.nodes.data(), start, inert);
-  if (wrong.empty()) wrong = check_moment(octree, elements, last().nodes.data(), end, inert);
-  return wrong;
-}
-
 }  // namespace supple

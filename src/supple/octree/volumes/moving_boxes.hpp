@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -57,9 +56,6 @@ class MovingBoxes {
   Aabb swept_box() const;
 
   std::size_t bytes() const;
-  /// The empty string when every box is that of its elements; otherwise what is wrong.
-  std::string validate(const ObjectOctree& octree, const SurfaceElements& elements, const VertexBuffer& start,
-                       const VertexBuffer& end) const;
 
  private:
   /// Boxes at one end of the step.

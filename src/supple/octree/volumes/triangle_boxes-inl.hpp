@@ -187,20 +187,11 @@ HWY_INLINE void extend_by_triangle(Box& box, VertexArray<Scalar> positions, cons
 }
 
 /// Sets the box of a child.
-HWY_INLINE void set_child(ChildBoxes& children, int child, const float* lower, const float* upper) {
-  children.min_x[child] = lower[0];
-  children.min_y[child] = lower[1];
-  children.min_z[child] = lower[2];
-  children.max_x[child] = upper[0];
-  children.max_y[child] = upper[1];
-  children.max_z[child] = upper[2];
-}
-
 template <class Box>
 HWY_INLINE void set_child(ChildBoxes& children, int child, const Box& box) {
   HWY_ALIGN float lower[4], upper[4];
   box.store(lower, upper);
-  set_child(children, child, lower, upper);
+  set_child_box(children, child, {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}});
 }
 
 #if HWY_TARGET != HWY_SCALAR
@@ -281,7 +272,7 @@ HWY_INLINE void unite_children(const OctreeNode* nodes, ChildBoxes* boxes, std::
   invert_children_from(boxes[n], node.child_count);
   if (node.parent == n) return;
   const Aabb box = enclose_children(boxes[n]);
-  set_child(boxes[node.parent], node.index_in_parent, &box.min.x, &box.max.x);
+  set_child_box(boxes[node.parent], node.index_in_parent, box);
 }
 
 }  // namespace HWY_NAMESPACE

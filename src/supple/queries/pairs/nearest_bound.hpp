@@ -38,13 +38,9 @@ struct TriangleDepths {
     return result;
   }
   QueryBox box(unsigned corners) const {
-    constexpr double most = std::numeric_limits<double>::infinity();
-    QueryBox result{{most, most, most}, {-most, -most, -most}};
+    QueryBox result = no_box();
     for (std::size_t i = 0; i < 3; ++i) {
-      for (int axis = 0; (corners >> i & 1) != 0 && axis < 3; ++axis) {
-        result.min[axis] = std::min(result.min[axis], points[i][axis]);
-        result.max[axis] = std::max(result.max[axis], points[i][axis]);
-      }
+      if ((corners >> i & 1) != 0) extend(result, points[i], points[i]);
     }
     return result;
   }

@@ -24,18 +24,10 @@ bool are_along_one_axis(const EdgePoints& p, const EdgePoints& q) {
 
 /// Whether the boxes of some points are farther apart than `distance`.
 bool boxes_apart(std::span<const Vec3d> a, std::span<const Vec3d> b, double distance) {
+  const QueryBox box_a = box_around(a), box_b = box_around(b);
   double square = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    double low_a = a[0][axis], high_a = low_a, low_b = b[0][axis], high_b = low_b;
-    for (const Vec3d& p : a) {
-      low_a = std::min(low_a, p[axis]);
-      high_a = std::max(high_a, p[axis]);
-    }
-    for (const Vec3d& p : b) {
-      low_b = std::min(low_b, p[axis]);
-      high_b = std::max(high_b, p[axis]);
-    }
-    const double gap = std::max({low_a - high_b, low_b - high_a, 0.0});
+    const double gap = std::max({box_a.min[axis] - box_b.max[axis], box_b.min[axis] - box_a.max[axis], 0.0});
     if (gap > distance * (1 + 0x1p-50)) return true;
     square += gap * gap;
   }

@@ -77,16 +77,16 @@ void NearestPairSearch::set_limit(double limit) {
   squared_limit_ = round_up(limit * limit * (1 + 0x1p-18) + 0x1p-120);
 }
 
-PointBounds NearestPairSearch::seen(const Aabb& box, double direction) const {
+Aabb NearestPairSearch::seen(const Aabb& box, double direction) const {
   constexpr float most = std::numeric_limits<float>::max();
-  PointBounds bounds;
+  Aabb bounds;
   for (int axis = 0; axis < 3; ++axis) {
     const double offset = direction * offset_[axis];
     // Always a step outwards, which is faster than `round_down` and `round_up`.
     const float low = std::min(static_cast<float>(box.min[axis] + offset - slop_[axis]), most),
                 high = std::max(static_cast<float>(box.max[axis] + offset + slop_[axis]), -most);
-    bounds.low[axis] = low - outward_step(low);
-    bounds.high[axis] = high + outward_step(high);
+    bounds.min[axis] = low - outward_step(low);
+    bounds.max[axis] = high + outward_step(high);
   }
   return bounds;
 }
@@ -229,8 +229,8 @@ void NearestPairSearch::test_leaves(const Entry& leaves) {
                       leaf_b = node_width * leaves.node_b + static_cast<std::uint32_t>(leaves.child_b);
   const std::uint32_t end_a = node_a.first_triangle[leaves.child_a + 1],
                       end_b = node_b.first_triangle[leaves.child_b + 1];
-  const PointBounds box_a = seen_by_b(child_box(a_->view.boxes[leaves.node_a], leaves.child_a)),
-                    box_b = seen_by_a(child_box(b_->view.boxes[leaves.node_b], leaves.child_b));
+  const Aabb box_a = seen_by_b(child_box(a_->view.boxes[leaves.node_a], leaves.child_a)),
+             box_b = seen_by_a(child_box(b_->view.boxes[leaves.node_b], leaves.child_b));
   const QueryBox placed_a = a_->child_box(leaves.node_a, leaves.child_a),
                  placed_b = b_->child_box(leaves.node_b, leaves.child_b);
   for (std::uint32_t begin_a = node_a.first_triangle[leaves.child_a]; begin_a < end_a;
@@ -284,8 +284,7 @@ void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left_a));
     // A contact of this triangle would come after the first one so far.
     if (intersects_ && a_->triangle_ids[triangles_.a] < a_->triangle_ids[begin_a + i]) continue;
-    const PointBounds box_a = seen_by_b({{boxes_a.min_x[i], boxes_a.min_y[i], boxes_a.min_z[i]},
-                                         {boxes_a.max_x[i], boxes_a.max_y[i], boxes_a.max_z[i]}});
+    const Aabb box_a = seen_by_b(boxes_a.box(i));
     for (std::uint64_t left_b = near_triangles(box_a, boxes_b, squared_limit_) & near_b; left_b != 0;
          left_b &= left_b - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(left_b));

@@ -92,9 +92,9 @@ class NearestPairSearch {
   void set_limit(double limit);
   bool is_done() const { return (search_ == Search::any_contact && intersects_) || stop_.stop_requested(); }
   /// A box of a as b's boxes see it, and the other way round.
-  PointBounds seen_by_b(const Aabb& box) const { return seen(box, 1); }
-  PointBounds seen_by_a(const Aabb& box) const { return seen(box, -1); }
-  PointBounds seen(const Aabb& box, double direction) const;
+  Aabb seen_by_b(const Aabb& box) const { return seen(box, 1); }
+  Aabb seen_by_a(const Aabb& box) const { return seen(box, -1); }
+  Aabb seen(const Aabb& box, double direction) const;
 
   const QueriedObject* a_ = nullptr;
   const QueriedObject* b_ = nullptr;

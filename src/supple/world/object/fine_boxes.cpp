@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
+#include "narrow_phase/query_kernels.hpp"
 #include "octree/refit_bottom_up.hpp"
 
 namespace supple {
@@ -24,15 +24,7 @@ bool FineBoxes::are_needed(const OctreeView& view) {
 void FineBoxes::update(const OctreeView& view, const VertexBuffer& positions, std::uint64_t version) {
   if (version_ == version) return;
   version_ = 0;  // until all is computed
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const Vec3d largest{infinity, infinity, infinity};
-  boxes_.assign(node_width * view.nodes.size(), {largest, -largest});
-  const auto include = [](QueryBox& box, const Vec3d& low, const Vec3d& high) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.min[axis] = std::min(box.min[axis], low[axis]);
-      box.max[axis] = std::max(box.max[axis], high[axis]);
-    }
-  };
+  boxes_.assign(node_width * view.nodes.size(), no_box());
   refit_bottom_up(
       view.nodes.data(), 0, static_cast<std::uint32_t>(view.nodes.size()),
       [&](std::uint32_t n, int child) {
@@ -42,7 +34,7 @@ void FineBoxes::update(const OctreeView& view, const VertexBuffer& positions, st
           if (view.arrays.inert != nullptr && view.arrays.inert[t] != 0) continue;
           for (const std::uint32_t vertex : view.arrays.triangles[t]) {
             const Vec3d p = positions[vertex];
-            include(box, p, p);
+            extend(box, p, p);
           }
         }
       },
@@ -51,7 +43,7 @@ void FineBoxes::update(const OctreeView& view, const VertexBuffer& positions, st
         if (node.parent == n) return;
         QueryBox& box = boxes_[node_width * std::size_t{node.parent} + node.index_in_parent];
         for (const QueryBox& child : std::span(boxes_).subspan(node_width * std::size_t{n}, node_width))
-          include(box, child.min, child.max);
+          extend(box, child.min, child.max);
       });
   version_ = version;
 }

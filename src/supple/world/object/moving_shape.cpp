@@ -33,11 +33,6 @@ OctreeView MovingShape::view(const ObjectOctree& octree, const Placement& placem
   return view;
 }
 
-std::string MovingShape::validate(const ObjectOctree& octree) const {
-  const std::string wrong = elements_.validate(octree);
-  return wrong.empty() ? boxes_.validate(octree, elements_, start(), end_) : wrong;
-}
-
 std::size_t MovingShape::bytes() const {
   return elements_.bytes() + start_.bytes() + end_.bytes() + boxes_.bytes() + culling_.bytes();
 }

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -32,6 +31,7 @@ class MovingShape {
 
   OctreeView view(const ObjectOctree& octree, const Placement& placement) const;
   const SurfaceElements& elements() const { return elements_; }
+  const MovingBoxes& boxes() const { return boxes_; }
   /// Positions in the elements' numbering, without the placement's translation. At rest, `start` and `end`
   /// are the same buffer.
   const VertexBuffer& start() const { return boxes_.at_rest() ? end_ : start_; }
@@ -42,7 +42,6 @@ class MovingShape {
   const ChildBoxes* node_boxes() const { return boxes_.view(elements_).end; }
   /// The user's ids of vertices that were not finite at one end of the step at the last update, ascending.
   std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
-  std::string validate(const ObjectOctree& octree) const;
   std::size_t bytes() const;
 
   /// Call after the octree was rebuilt.

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -47,9 +46,6 @@ class RestingShape {
   /// The user's ids at the last update, ascending.
   std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
   bool has_inert_faces() const { return has_inert_faces_; }
-  std::string validate(const ObjectOctree& octree, const Placement& placement) const {
-    return octree.validate(placement.end(), inert_);
-  }
   std::size_t bytes() const { return inert_.capacity() + culling_.bytes(); }
 
   /// Call after the octree was rebuilt.

@@ -268,17 +268,6 @@ bool WorldObject::rebuild(const Parallel& parallel) {
   return true;
 }
 
-std::string WorldObject::validate() const {
-  if (resting_.is_current(placement_)) {
-    if (std::string wrong = resting_.validate(octree_, placement_); !wrong.empty()) return wrong;
-  }
-  for (const MovingShape* shape : {&moving_, &near_}) {
-    if (!shape->is_current(placement_)) continue;
-    if (std::string wrong = shape->validate(octree_); !wrong.empty()) return wrong;
-  }
-  return "";
-}
-
 Vec3d WorldObject::non_finite_position(std::uint32_t vertex) const {
   const Vec3d end = placement_.position(vertex);
   return is_finite(end) ? placement_.start_position(vertex) : end;

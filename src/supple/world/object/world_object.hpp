@@ -149,8 +149,6 @@ class WorldObject {
   /// `Orientation::inward` of a solid at the positions of its shape; empty for other objects. Takes O(n) when
   /// these have changed.
   std::span<const std::uint8_t> inward_triangles();
-  /// Checks the shapes that are up to date.
-  std::string validate() const;
   /// Memory of the octree and its shapes, without that of the positions.
   std::size_t bytes() const { return octree_.bytes() + resting_.bytes() + moving_.bytes() + near_.bytes(); }
   std::uint64_t rebuilds() const { return rebuilds_; }

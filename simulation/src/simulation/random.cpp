@@ -1,4 +1,4 @@
-#include "core/random.hpp"
+#include "simulation/random.hpp"
 
 #include <cmath>
 
