@@ -1,15 +1,25 @@
 #pragma once
 
+#include <fmt/core.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "supple/error.hpp"
 #include "supple/scene.hpp"
 #include "supple/utf8.hpp"
 
 namespace supple::cli {
+
+/// Throws an `Error` with this message.
+template <class... Args>
+[[noreturn]] void fail(fmt::format_string<Args...> message, Args&&... args) {
+  throw Error(fmt::format(message, std::forward<Args>(args)...));
+}
 
 /// A table prints at most this many rows, and then the number of omitted rows.
 inline constexpr std::size_t most_rows = 40;

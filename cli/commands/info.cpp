@@ -1,7 +1,6 @@
 #include "commands/commands.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,7 +23,6 @@
 #include "inputs/inputs.hpp"
 #include "moving/ranks.hpp"
 #include "reports/reports.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -33,9 +31,8 @@ using Clock = std::chrono::steady_clock;
 
 Input read_input(const SimulateOptions& options) {
   if (!is_scene_file(options.input))
-    throw Error(fmt::format(
-        "{}: is not a scene file; write a SCENE.toml with an [[object]] that has this file as its mesh",
-        options.input));
+    fail("{}: is not a scene file; write a SCENE.toml with an [[object]] that has this file as its mesh",
+         options.input);
   return read_objects({options.input}, {options.seed, options.time_step});
 }
 
@@ -45,8 +42,7 @@ std::uint64_t count_steps(const SimulateOptions& options, double time_step) {
   if (!options.seconds) return options.frames.value_or(default_frames) - 1;
   const double steps = *options.seconds / time_step;
   if (steps > 1e9)
-    throw Error(fmt::format("--seconds: {} are {:.3g} steps of {}; at most 1e9 are allowed", *options.seconds,
-                            steps, time_step));
+    fail("--seconds: {} are {:.3g} steps of {}; at most 1e9 are allowed", *options.seconds, steps, time_step);
   const double whole = std::round(steps);
   const bool is_whole = std::abs(steps - whole) < 1e-9 * whole;  // up to rounding of the division
   return static_cast<std::uint64_t>(is_whole ? whole : std::ceil(steps));

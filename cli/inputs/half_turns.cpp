@@ -1,7 +1,6 @@
 #include "inputs/half_turns.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

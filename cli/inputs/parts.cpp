@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "supple/error.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
 
@@ -78,10 +77,10 @@ Motion motion_of_part(const InputObject& whole, const std::shared_ptr<WholeFrame
     std::erase_if(springs->handles,
                   [](const MassSpringMotion::Handle& handle) { return handle.vertices.empty(); });
   } else {
-    throw Error(
-        fmt::format("{}: the frames of a recording have no parts; leave out the parts, or record again with "
-                    "parts",
-                    one_line(whole.mesh.name)));
+    fail(
+        "{}: the frames of a recording have no parts; leave out the parts, or record again with "
+        "parts",
+        one_line(whole.mesh.name));
   }
   return motion;
 }

@@ -1,7 +1,5 @@
 #include "mpi/distributed_objects.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstring>

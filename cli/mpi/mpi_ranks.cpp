@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "mpi/distributed_objects.hpp"
 #include "options/option_needs.hpp"
@@ -64,8 +65,7 @@ void MpiRanks::check(const DetectionOptions& options, const Input& input) {
        "weld"},
   };
   for (const auto& [is_given, what] : refused) {
-    if (is_given)
-      throw Error(fmt::format("{}: several ranks do not have it; leave it out, or start one process", what));
+    if (is_given) fail("{}: several ranks do not have it; leave it out, or start one process", what);
   }
 }
 

@@ -4,12 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <functional>
 #include <iterator>
-#include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>

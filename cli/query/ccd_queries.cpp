@@ -10,7 +10,6 @@
 #include <span>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include "base/exit_status.hpp"
@@ -20,7 +19,6 @@
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "supple/difference_descriptions.hpp"
-#include "supple/error.hpp"
 #include "supple/result.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/verify.hpp"
@@ -64,14 +62,12 @@ std::vector<QueryPaths> paths_of(const CcdQueriesOptions& options) {
   const std::vector<fs::path> answers = expand_patterns(options.answers);
   for (const auto& inputs : {queries, answers}) check_output_names({{"--json", options.json}}, inputs);
   if (!answers.empty() && answers.size() != queries.size())
-    throw Error(fmt::format("--answers: {} for {}; give one for each, in the same order",
-                            counted(answers.size(), "file"),
-                            counted(queries.size(), "query file", "query files")));
+    fail("--answers: {} for {}; give one for each, in the same order", counted(answers.size(), "file"),
+         counted(queries.size(), "query file", "query files"));
   std::vector<QueryPaths> paths;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     if (!fs::exists(queries[i]))
-      throw Error(
-          fmt::format("{}: there is no such file; check the folder and the spelling", queries[i].string()));
+      fail("{}: there is no such file; check the folder and the spelling", queries[i].string());
     std::error_code is_no_file;
     const std::uintmax_t bytes = fs::file_size(queries[i], is_no_file);
     paths.push_back({queries[i], answers.empty() ? fs::path{} : answers[i], is_no_file ? 0 : bytes});

@@ -1,7 +1,5 @@
 #include "query/query_file.hpp"
 
-#include <fmt/core.h>
-
 #include <array>
 #include <charconv>
 #include <cstddef>
@@ -12,7 +10,6 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -36,18 +33,15 @@ void read_lines(const std::filesystem::path& path, const char* meaning, const Ad
       const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
       const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
       if (error != std::errc() || end != digits.data() + digits.size())
-        throw Error(
-            one_line(fmt::format("{}: line {}: \"{}\" is not a number that a double can hold; a line has {}",
-                                 path.string(), number, word.substr(0, 40), meaning)));
+        fail("{}: line {}: \"{}\" is not a number that a double can hold; a line has {}", path.string(),
+             number, word.substr(0, 40), meaning);
       if (found < count) values[found] = value;
     }
     if (found == 0) continue;
-    if (found != count)
-      throw Error(
-          fmt::format("{}: line {}: {} numbers; a line has {}", path.string(), number, found, meaning));
+    if (found != count) fail("{}: line {}: {} numbers; a line has {}", path.string(), number, found, meaning);
     add(values);
   }
-  if (file.bad()) throw Error(fmt::format("{}: the file cannot be read to its end", path.string()));
+  if (file.bad()) fail("{}: the file cannot be read to its end", path.string());
 }
 
 }  // namespace

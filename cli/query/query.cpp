@@ -24,7 +24,6 @@
 #include "inputs/inputs.hpp"
 #include "query/query_file.hpp"
 #include "reports/result_json.hpp"
-#include "supple/error.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/scene.hpp"
 #include "supple/verify.hpp"
@@ -143,8 +142,8 @@ void Run::in_batches(Interruption& interruption, std::vector<Query> queries, std
 
 void Run::find_distances(Interruption& interruption) {
   if (scene_.objects().size() < 2)
-    throw Error(fmt::format("{}: has {}; distances need two, so add meshes, or objects to the scene",
-                            options_.inputs.front(), counted(scene_.objects().size(), "object")));
+    fail("{}: has {}; distances need two, so add meshes, or objects to the scene", options_.inputs.front(),
+         counted(scene_.objects().size(), "object"));
   const auto start = std::chrono::steady_clock::now();
   const CallLimits limits{interruption.token()};
   const auto found = scene_.distances(options_.max_distance, limits);
@@ -228,10 +227,10 @@ void Run::warn_of_objects_without_triangles() const {
   }
   if (names.empty()) return;
   if (names.size() == scene_.objects().size())
-    throw Error(
-        fmt::format("{}: no object has a triangle of finite coordinates, so there is nothing to query; give "
-                    "surfaces of triangles, not lines or clouds of points",
-                    options_.inputs.front()));
+    fail(
+        "{}: no object has a triangle of finite coordinates, so there is nothing to query; give "
+        "surfaces of triangles, not lines or clouds of points",
+        options_.inputs.front());
   if (!options_.quiet)
     fmt::print(
         stderr,

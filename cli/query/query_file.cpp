@@ -15,7 +15,6 @@
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "query/rational.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -73,8 +72,9 @@ class RowReader {
 
   std::optional<Row> next();
   std::uint64_t line_number() const { return line_number_; }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(one_line(fmt::format("{}:{}: {}", path_.string(), line_number_, what)));
+  template <class... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> what, Args&&... args) const {
+    cli::fail("{}:{}: {}", path_.string(), line_number_, fmt::format(what, std::forward<Args>(args)...));
   }
 
  private:
@@ -112,26 +112,24 @@ std::optional<Row> RowReader::next() {
 void RowReader::check_column_count(std::size_t count) {
   if (count != columns_of_point && count != columns_of_point + 1)
     fail(
-        fmt::format("has {} instead of 6 or 7: a row is numerator,denominator of x, y and z, and optionally "
-                    "the answer, 0 or 1",
-                    counted(count, "column")));
+        "has {} instead of 6 or 7: a row is numerator,denominator of x, y and z, and optionally "
+        "the answer, 0 or 1",
+        counted(count, "column"));
   if (column_count_ == 0) column_count_ = count;
   if (count != column_count_)
-    fail(fmt::format(
-        "has {} columns, but the first row has {}; all rows or no row must have the answer as column 7",
-        count, column_count_));
+    fail("has {} columns, but the first row has {}; all rows or no row must have the answer as column 7",
+         count, column_count_);
 }
 
 Integer RowReader::integer(std::string_view text) const {
   std::optional<Integer> value = parse_integer(text);
-  if (!value)
-    fail(fmt::format("'{}' is not a whole number; a coordinate is numerator,denominator", shortened(text)));
+  if (!value) fail("'{}' is not a whole number; a coordinate is numerator,denominator", shortened(text));
   return *std::move(value);
 }
 
 double RowReader::coordinate(char axis, std::string_view numerator, std::string_view denominator) const {
   const auto fail_with = [&](const std::string& what) {
-    fail(fmt::format("{} = {}/{} {}", axis, shortened(numerator), shortened(denominator), what));
+    fail("{} = {}/{} {}", axis, shortened(numerator), shortened(denominator), what);
   };
   if (const std::optional<double> usual = exact_small_quotient(numerator, denominator)) return *usual;
   const Integer top = integer(numerator), bottom = integer(denominator);
@@ -144,7 +142,7 @@ double RowReader::coordinate(char axis, std::string_view numerator, std::string_
 }
 
 bool RowReader::answer(std::string_view text) const {
-  if (text != "0" && text != "1") fail(fmt::format("the answer '{}' must be 0 or 1", shortened(text)));
+  if (text != "0" && text != "1") fail("the answer '{}' must be 0 or 1", shortened(text));
   return text == "1";
 }
 
@@ -165,9 +163,9 @@ class QueryReader {
       if (i == 0) first = row;
       if (row->answer != first->answer)
         rows_.fail(
-            fmt::format("the answer is {:d}, but {:d} in the rows of this query before; all eight rows must "
-                        "have the same answer",
-                        *row->answer, *first->answer));
+            "the answer is {:d}, but {:d} in the rows of this query before; all eight rows must "
+            "have the same answer",
+            *row->answer, *first->answer);
       (i < 4 ? motion.start : motion.end)[i % 4] = row->point;
     }
     motions.push_back(motion);
@@ -177,10 +175,10 @@ class QueryReader {
 
  private:
   [[noreturn]] void fail_incomplete(std::size_t rows) const {
-    rows_.fail(fmt::format(
+    rows_.fail(
         "the file ends after {} of a query; a query has eight rows: four vertices at the start of the step, "
         "then the same vertices at its end",
-        counted(rows, "row")));
+        counted(rows, "row"));
   }
 
   RowReader rows_;
@@ -238,13 +236,12 @@ std::uint64_t line_of(const std::string& text, std::size_t offset) {
 QueryKind kind_of(const fs::path& path) {
   const std::optional<QueryKind> folder = kind_of_folder(path), stem = kind_of_stem(path);
   if (folder && stem && *folder != *stem)
-    throw Error(fmt::format("{}: the folder and the name give different kinds of queries; give --kind",
-                            path.string()));
+    fail("{}: the folder and the name give different kinds of queries; give --kind", path.string());
   if (!folder && !stem)
-    throw Error(
-        fmt::format("{}: cannot tell whether these are vertex-face or edge-edge queries; give --kind, or a "
-                    "folder named after the kind, or a name that ends in vf or ee",
-                    path.string()));
+    fail(
+        "{}: cannot tell whether these are vertex-face or edge-edge queries; give --kind, or a "
+        "folder named after the kind, or a name that ends in vf or ee",
+        path.string());
   return folder ? *folder : *stem;
 }
 
@@ -255,25 +252,24 @@ QueryFile read_query_file(const fs::path& path, QueryKind kind) {
 
 void read_answers(const fs::path& path, QueryFile& file) {
   if (file.answers && file.size() > 0)
-    throw Error(fmt::format("{}: already has a column of answers; leave out --answers {}", file.path.string(),
-                            path.string()));
+    fail("{}: already has a column of answers; leave out --answers {}", file.path.string(), path.string());
   const std::string text = read_text(path);
   AnswerHandler handler;
   rapidjson::MemoryStream input(text.data(), text.size());
   const rapidjson::ParseResult parsed =
       rapidjson::Reader().Parse<rapidjson::kParseIterativeFlag>(input, handler);
-  const auto fail = [&](const std::string& what) {
-    throw Error(one_line(fmt::format("{}:{}: {}", path.string(), line_of(text, parsed.Offset()), what)));
+  const auto fail_there = [&](const std::string& what) {
+    fail("{}:{}: {}", path.string(), line_of(text, parsed.Offset()), what);
   };
   if (parsed.Code() == rapidjson::kParseErrorTermination)
-    fail(handler.in_list ? fmt::format("entry {} must be true or false", handler.answers.size())
-                         : "must be a list of true and false, one per query");
-  if (!parsed) fail(fmt::format("not valid JSON: {}", rapidjson::GetParseError_En(parsed.Code())));
+    fail_there(handler.in_list ? fmt::format("entry {} must be true or false", handler.answers.size())
+                               : "must be a list of true and false, one per query");
+  if (!parsed) fail_there(fmt::format("not valid JSON: {}", rapidjson::GetParseError_En(parsed.Code())));
   file.answers = std::move(handler.answers);
   if (file.answers->size() != file.size())
-    throw Error(fmt::format("{}: has {}, but {} has {}; it needs one per query", path.string(),
-                            counted(file.answers->size(), "answer"), file.path.string(),
-                            counted(file.size(), "query", "queries")));
+    fail("{}: has {}, but {} has {}; it needs one per query", path.string(),
+         counted(file.answers->size(), "answer"), file.path.string(),
+         counted(file.size(), "query", "queries"));
 }
 
 }  // namespace supple::cli

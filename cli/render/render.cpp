@@ -49,11 +49,11 @@ Pixels size_in_pixels(const RenderOptions& options) {
   const auto pixels = [&](double length) { return std::round(scale * length); };
   const double width = pixels(options.size.width), height = pixels(options.size.height);
   if (!(std::min(width, height) >= 1) || std::max(width, height) > most_pixels)
-    throw Error(
-        fmt::format("--size: the pictures would have {:.0f} x {:.0f} pixels; choose a size from 1 to {} "
-                    "pixels a side, or "
-                    "another --dpi",
-                    width, height, most_pixels));
+    fail(
+        "--size: the pictures would have {:.0f} x {:.0f} pixels; choose a size from 1 to {} "
+        "pixels a side, or "
+        "another --dpi",
+        width, height, most_pixels);
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
@@ -103,7 +103,7 @@ PageResult parse_result(std::span<const std::byte> bytes) {
   std::optional<viewer::JsonValue> head;
   if (length > 0 && length <= bytes.size() - sizeof length)
     head = viewer::parse_json(text.substr(sizeof length, length), fault);
-  if (!head) throw Error("the page sent a result that cannot be read; this is a fault of supple");
+  if (!head) fail("the page sent a result that cannot be read; this is a fault of supple");
   return {std::move(*head), text.substr(sizeof length + length)};
 }
 
@@ -192,18 +192,18 @@ class Run {
 void check_frames(const RenderOptions& options, const viewer::SceneView& show, const PictureNames& names) {
   const bool is_plot = !options.plot.empty();
   if (is_plot && !show.frames && !options.frames)
-    throw Error("--plot: a simulation has no end; choose its steps, such as --frames 0-100");
+    fail("--plot: a simulation has no end; choose its steps, such as --frames 0-100");
   if (is_plot && names.has_number())
-    throw Error(fmt::format("--output: {}: a plot is one picture; write a name without %", options.output));
+    fail("--output: {}: a plot is one picture; write a name without %", options.output);
   if (!options.frames) return;
   if (!is_plot && !names.has_number() && options.frames->count() > 1)
-    throw Error(
-        fmt::format("--output: {}: the pictures of several frames need different names; write %04d "
-                    "where the number of the frame shall be",
-                    options.output));
+    fail(
+        "--output: {}: the pictures of several frames need different names; write %04d "
+        "where the number of the frame shall be",
+        options.output);
   if (show.frames && options.frames->last >= show.frames->count())
-    throw Error(fmt::format("--frames: {} is no frame of {}, which has the frames 0 to {}",
-                            options.frames->last, options.inputs.front(), show.frames->count() - 1));
+    fail("--frames: {} is no frame of {}, which has the frames 0 to {}", options.frames->last,
+         options.inputs.front(), show.frames->count() - 1);
 }
 
 }  // namespace

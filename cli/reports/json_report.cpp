@@ -1,8 +1,5 @@
 #include "reports/report.hpp"
 
-#include <fmt/core.h>
-
-#include <array>
 #include <string>
 #include <string_view>
 #include <utility>

@@ -13,7 +13,6 @@
 #include "base/text.hpp"
 #include "export/embedded.hpp"
 #include "inputs/inputs.hpp"
-#include "supple/error.hpp"
 #include "view/recorded_frames.hpp"
 
 namespace supple::cli {
@@ -76,15 +75,14 @@ std::shared_ptr<viewer::Frames> view_frames_of(const Input& input, const ViewOpt
       return std::make_shared<RecordedFrames>(options.inputs.front(), motion->recording, options.follow);
   }
   if (options.follow)
-    throw Error(
-        fmt::format("--follow: {} is not a recording; record one with supple simulate --record run.h5",
-                    options.inputs.front()));
+    fail("--follow: {} is not a recording; record one with supple simulate --record run.h5",
+         options.inputs.front());
   if (!has_motion<FrameSequence>(input) && !has_motion<ComputedMotion>(input)) return nullptr;
   if (has_motion<MassSpringMotion>(input) || has_motion<RigidMotion>(input))
-    throw Error(fmt::format(
+    fail(
         "{}: some objects are moved by files, others are bodies that a simulation moves, which the viewer "
         "cannot show together; record them first, supple simulate {} --record run.h5, and view run.h5",
-        options.inputs.front(), options.inputs.front()));
+        options.inputs.front(), options.inputs.front());
   return std::make_shared<FileFrames>(input);
 }
 
@@ -120,12 +118,12 @@ std::string title_of(const std::vector<std::string>& inputs) {
 void compare(viewer::SceneView& show, const Input& input, const ViewOptions& options) {
   const std::string& first = options.inputs.front();
   if (options.inputs.size() != 1 || !is_recording(first))
-    throw Error(fmt::format("--compare: {} is not a recording; compare two recordings", first));
+    fail("--compare: {} is not a recording; compare two recordings", first);
   if (!is_recording(options.compared))
-    throw Error(fmt::format("--compare: {} is not a recording; compare two recordings", options.compared));
+    fail("--compare: {} is not a recording; compare two recordings", options.compared);
   const Input other = read_recording(options.compared);
   const auto a = recording_of(input), b = recording_of(other);
-  if (!a || !b) throw Error(fmt::format("--compare: nothing moves in {}", a ? options.compared : first));
+  if (!a || !b) fail("--compare: nothing moves in {}", a ? options.compared : first);
   show.title = fmt::format("{} and {}", show.title, title_of({options.compared}));
   viewer::Comparison comparison{
       {title_of({first}), title_of({options.compared})}, show.objects.size(), {}, {}};
@@ -145,7 +143,7 @@ void compare(viewer::SceneView& show, const Input& input, const ViewOptions& opt
 
 void check_viewer() {
   if (viewer::embedded_page().empty())
-    throw Error(
+    fail(
         "this supple was built without the viewer; run make program, or configure the build with "
         "-DSUPPLE_BUILD_VIEWER=ON, which needs npm and clang-19's WebAssembly (tools/install_dependencies.sh "
         "installs them on Debian 12)");
@@ -153,13 +151,13 @@ void check_viewer() {
 
 Input read_view_input(const ViewOptions& options) {
   const bool is_scene = is_scene_file(options.inputs.front());
-  if (options.seed && !is_scene) throw Error("--seed: only a scene file uses random numbers; leave it out");
+  if (options.seed && !is_scene) fail("--seed: only a scene file uses random numbers; leave it out");
   if (options.time_step && !is_scene && !options.sequence)
-    throw Error("--time-step: only a scene file or --sequence has time steps; leave it out");
+    fail("--time-step: only a scene file or --sequence has time steps; leave it out");
   if (!options.sequence) {
     Input input = read_objects(options.inputs, {options.seed, options.time_step}, options.reading);
     if (options.reading.clips.frames && !moves_by_itself(input))
-      throw Error("--frames: only the animation of a mesh file has a choice of frames; leave it out");
+      fail("--frames: only the animation of a mesh file has a choice of frames; leave it out");
     return input;
   }
   Input input = read_sequence(options.inputs, options.reading.conversion);

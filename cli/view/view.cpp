@@ -24,7 +24,6 @@
 #include "session/messages/mesh_warnings.hpp"
 #include "session/packed/packed_scene.hpp"
 #include "session/session.hpp"
-#include "supple/error.hpp"
 #include "view/build_scene_view.hpp"
 #include "view_file/view_file.hpp"
 
@@ -43,11 +42,11 @@ double size_of_frames(const viewer::SceneView& show) {
 
 void check_page_size(const std::string& file, double bytes, double most) {
   if (bytes <= most) return;
-  throw Error(
-      fmt::format("{}: the page would have {:.0f} MB{}, but browsers open at most {} MB; record fewer frames "
-                  "or coarser meshes, or send the recording itself",
-                  file, bytes / 1e6, most > viewer::largest_page ? " before compression" : "",
-                  viewer::largest_page / 1'000'000));
+  fail(
+      "{}: the page would have {:.0f} MB{}, but browsers open at most {} MB; record fewer frames "
+      "or coarser meshes, or send the recording itself",
+      file, bytes / 1e6, most > viewer::largest_page ? " before compression" : "",
+      viewer::largest_page / 1'000'000);
 }
 
 int write_page(const viewer::SceneView& show, const ViewOptions& options, std::string_view template_page) {

@@ -1,7 +1,6 @@
 #include "verify/brute_force_impacts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <tuple>

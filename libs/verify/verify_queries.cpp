@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "core/error.hpp"
 #include "geometry/vector.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "geometry/numbers/integer_points.hpp"
 #include "geometry/vector.hpp"

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <optional>
 #include <set>
-#include <utility>
 #include <vector>
 
 namespace supple {
