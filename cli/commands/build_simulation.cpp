@@ -61,8 +61,7 @@ void apply(const MethodOptions& options, Input& input) {
 }
 
 ObjectId add_positions(Simulation& simulation, const InputObject& object) {
-  if (object.motion && std::holds_alternative<MassSpringMotion>(*object.motion))
-    return add_object(simulation, object);
+  if (motion_of<MassSpringMotion>(object)) return add_object(simulation, object);
   const ObjectOptions options{.name = object.options.name};
   Adder adder{simulation, object, options, true};
   return object.motion ? std::visit(adder, *object.motion) : adder.add();

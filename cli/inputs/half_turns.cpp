@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <variant>
 
 namespace supple::cli {
 namespace {
@@ -69,7 +68,7 @@ bool turns_too_far(std::span<const Vec3d> from, std::span<const Vec3d> to) {
 HalfTurns::HalfTurns(const Simulation& simulation, const Input& input)
     : simulation_(simulation), objects_(simulation.scene().objects()), before_(objects_.size()) {
   for (const InputObject& object : input.objects) {
-    const auto* const rigid = object.motion ? std::get_if<RigidMotion>(&*object.motion) : nullptr;
+    const auto* const rigid = motion_of<RigidMotion>(object);
     // The random spin has any direction.
     const double least_spin = rigid != nullptr ? std::fabs(norm(rigid->spin) - rigid->random_spin) : 0;
     spins_.push_back(least_spin * simulation.options().time_step > 120);

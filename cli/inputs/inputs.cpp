@@ -325,21 +325,20 @@ Input read_sequence(const std::vector<std::string>& names, const CoordinateConve
 }
 
 std::optional<ComputedMotion> frames_of(const InputObject& object) {
-  if (!object.motion) return std::nullopt;
-  if (const auto* sequence = std::get_if<FrameSequence>(&*object.motion)) {
+  if (const auto* sequence = motion_of<FrameSequence>(object)) {
     const auto files = std::make_shared<const FrameFiles>(*sequence, object.mesh);
     return ComputedMotion{sequence->files.size(), [files](std::uint64_t frame, std::span<Vec3d> positions) {
                             files->read(frame, positions);
                           }};
   }
-  if (const auto* recorded = std::get_if<RecordedMotion>(&*object.motion)) {
+  if (const auto* recorded = motion_of<RecordedMotion>(object)) {
     return ComputedMotion{recorded->recording->frame_count(),
                           [motion = *recorded](std::uint64_t frame, std::span<Vec3d> positions) {
                             std::ranges::copy(motion.recording->positions(frame, motion.object),
                                               positions.begin());
                           }};
   }
-  const auto* computed = std::get_if<ComputedMotion>(&*object.motion);
+  const auto* computed = motion_of<ComputedMotion>(object);
   return computed ? std::optional(*computed) : std::nullopt;
 }
 

@@ -88,8 +88,7 @@ Motion motion_of_part(const InputObject& whole, const std::shared_ptr<WholeFrame
 void add_parts(InputObject whole, std::vector<InputObject>& objects) {
   std::vector<MeshPart> parts = split_into_parts(whole.mesh, whole.options.weld);
   std::shared_ptr<WholeFrames> frames;
-  if (whole.motion && (std::holds_alternative<FrameSequence>(*whole.motion) ||
-                       std::holds_alternative<ComputedMotion>(*whole.motion)))
+  if (motion_of<FrameSequence>(whole) || motion_of<ComputedMotion>(whole))
     frames = std::make_shared<WholeFrames>(whole);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     MeshPart& part = parts[i];

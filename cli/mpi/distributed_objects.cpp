@@ -48,7 +48,7 @@ std::optional<Motion> numbered(std::optional<Motion> motion, std::uint64_t numbe
 
 bool has_response(const Input& input) {
   return input.simulation.response && std::ranges::any_of(input.objects, [](const InputObject& object) {
-           return object.motion && std::holds_alternative<MassSpringMotion>(*object.motion);
+           return motion_of<MassSpringMotion>(object) != nullptr;
          });
 }
 
@@ -221,8 +221,7 @@ std::vector<BodyEnergy> DistributedObjects::energies() {
   std::memcpy(all.data(), bytes.data(), bytes.size());
   std::vector<BodyEnergy> energies;
   for (std::uint32_t i = 0; i < all.size(); ++i) {
-    const auto& motion = input_.objects[i].motion;
-    if (motion && std::holds_alternative<MassSpringMotion>(*motion)) energies.push_back({{i}, all[i]});
+    if (motion_of<MassSpringMotion>(input_.objects[i])) energies.push_back({{i}, all[i]});
   }
   return energies;
 }

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "base/json_writer.hpp"
-#include "reports/report.hpp"
+#include "reports/reports.hpp"
 #include "session/fields/field_forms.hpp"
 #include "session/messages/described_json.hpp"
 #include "session/messages/sections.hpp"

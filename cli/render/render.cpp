@@ -213,18 +213,10 @@ int run_render(const RenderOptions& options) {
   const std::string program = find_browser(options.browser);
   const PictureNames names(options.output);
   const Pixels size = size_in_pixels(options);
-  std::string page(viewer::embedded_page());
-  if (!options.view_file.empty())
-    page = viewer::page_with_json(page, "supple-view", viewer::read_view(options.view_file));
-  page = viewer::page_with_json(page, "supple-job", job_of(options, size));
-  Input input = read_view_input(options);
-  check_output_names({{"--output", names.of(0)}, {"--view", options.view_file}}, input.files);
-  apply(options, input);
-  print_notes(input);
-  viewer::SceneView show = build_scene_view(input, options);
+  const std::string page = viewer::page_with_json(page_of(options), "supple-job", job_of(options, size));
+  viewer::SceneView show = read_scene_view(options, {"--output", names.of(0)});
   check_frames(options, show, names);
-  for (const std::string& warning : viewer::warnings_of_meshes(show))
-    fmt::print(stderr, "supple: warning: {}\n", one_line(warning));
+  print_warnings(show);
   warn_of_missing_threads(options.scene.threads);
   Run run(options, names, size);
   return run.go(std::move(show), page, program);

@@ -1,9 +1,8 @@
-#include "reports/report.hpp"
+#include "reports/reports.hpp"
 
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "inputs/inputs.hpp"
@@ -110,8 +109,7 @@ JsonReport::JsonReport(const std::string& file_name, const Input& input, const M
 void JsonReport::add_files(std::uint64_t frame) {
   bool is_first = true;
   for (std::size_t i = 0; i < input_.objects.size(); ++i) {
-    const auto& motion = input_.objects[i].motion;
-    const auto* const sequence = motion ? std::get_if<FrameSequence>(&*motion) : nullptr;
+    const auto* const sequence = motion_of<FrameSequence>(input_.objects[i]);
     if (!sequence) continue;
     if (std::exchange(is_first, false)) {
       json_.key("files");

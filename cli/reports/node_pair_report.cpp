@@ -1,4 +1,4 @@
-#include "reports/report.hpp"
+#include "reports/reports.hpp"
 
 #include <fmt/core.h>
 

@@ -11,7 +11,6 @@
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
-#include "reports/report.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/verify.hpp"
 

@@ -367,8 +367,8 @@ Input read_scene_text(std::string text, const fs::path& path, const SceneOverrid
   input.files.push_back(path);
   for (const auto& [name, shape] : shapes.meshes) input.files.emplace_back(name);
   for (const InputObject& object : input.objects) {
-    const auto* frames = object.motion ? std::get_if<FrameSequence>(&*object.motion) : nullptr;
-    if (frames != nullptr) input.files.insert(input.files.end(), frames->files.begin(), frames->files.end());
+    if (const auto* frames = motion_of<FrameSequence>(object))
+      input.files.insert(input.files.end(), frames->files.begin(), frames->files.end());
   }
   if (input.objects.empty()) fail("{}: has no objects; add an [[object]] with mesh or model", path.string());
   return input;

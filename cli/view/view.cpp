@@ -95,26 +95,13 @@ int serve(viewer::SceneView show, const ViewOptions& options, std::string_view p
   return exit_done;
 }
 
-/// The input is not kept: a recording that grows must have no other owner.
-viewer::SceneView read_show(const ViewOptions& options) {
-  Input input = read_view_input(options);
-  check_output_names({{"--export", options.page_file}, {"--view", options.view_file}}, input.files);
-  apply(options, input);
-  print_notes(input);
-  return build_scene_view(input, options);
-}
-
 }  // namespace
 
 int run_view(const ViewOptions& options) {
   check_viewer();
-  const std::string view = options.view_file.empty() ? "" : viewer::read_view(options.view_file);
-  const std::string page = view.empty()
-                               ? std::string(viewer::embedded_page())
-                               : viewer::page_with_json(viewer::embedded_page(), "supple-view", view);
-  viewer::SceneView show = read_show(options);
-  for (const std::string& warning : viewer::warnings_of_meshes(show))
-    fmt::print(stderr, "supple: warning: {}\n", one_line(warning));
+  const std::string page = page_of(options);
+  viewer::SceneView show = read_scene_view(options, {"--export", options.page_file});
+  print_warnings(show);
   if (!options.page_file.empty()) return write_page(show, options, page);
   warn_of_missing_threads(options.scene.threads);
   return serve(std::move(show), options, page);
