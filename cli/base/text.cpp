@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "supple/result_descriptions.hpp"
+
 namespace supple::cli {
 namespace {
 
@@ -47,6 +49,11 @@ std::string name_of(const Scene& scene, ObjectId object) {
 std::string name_of(Feature feature) {
   if (feature.kind == FeatureKind::face) return "f";
   return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
+}
+
+std::string element_name(FeatureKind kind, const std::array<std::uint32_t, 2>& ids) {
+  const std::string name = fmt::format("{} {}", word_of(kind), ids[0]);
+  return kind == FeatureKind::edge ? fmt::format("{} {}", name, ids[1]) : name;
 }
 
 std::string kind_word(FeatureKind a, FeatureKind b) {

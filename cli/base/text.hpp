@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -29,6 +30,8 @@ std::string name_of(const Scene& scene, ObjectId object);
 
 /// `v0` … `v2`, `e0` … `e2`, `f`.
 std::string name_of(Feature feature);
+/// `edge 3 5`, `face 7`.
+std::string element_name(FeatureKind kind, const std::array<std::uint32_t, 2>& ids);
 /// The kinds of the two sides of a proximity pair, as in JSON and CSV: `vf`, `ee` and so on.
 std::string kind_word(FeatureKind a, FeatureKind b);
 

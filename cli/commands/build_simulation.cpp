@@ -52,10 +52,14 @@ void apply(const MethodOptions& options, Input& input) {
   input.simulation.scene = options.scene;
   input.simulation.scene.contacts = with_included(options.scene.contacts);
   input.simulation.fused_refit = options.fused_refit.value_or(false);
+  apply_to_objects(options.given_objects, options.as_2007, options.parts, input);
+}
+
+void apply_to_objects(const viewer::Overrides<ObjectOptions>& given, bool as_2007, bool parts, Input& input) {
   for (InputObject& object : input.objects) {
-    if (options.as_2007) object.options.octree = octree_of_2007();
-    options.given_objects.apply_to(object.options);
-    object.splits = object.splits || options.parts;
+    if (as_2007) object.options.octree = octree_of_2007();
+    given.apply_to(object.options);
+    object.splits = object.splits || parts;
   }
   split_parts(input);
 }

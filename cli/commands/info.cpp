@@ -13,9 +13,9 @@
 #include "base/files.hpp"
 #include "base/json_writer.hpp"
 #include "base/text.hpp"
+#include "commands/build_simulation.hpp"
 #include "inputs/inputs.hpp"
 #include "session/messages/described_json.hpp"
-#include "supple/comparison.hpp"
 #include "supple/inspection.hpp"
 #include "supple/inspection_descriptions.hpp"
 #include "supple/orientation.hpp"
@@ -155,12 +155,7 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
 
 int run_info(const InfoOptions& options) {
   Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
-  for (InputObject& object : input.objects) {
-    if (options.as_2007) object.options.octree = octree_of_2007();
-    options.given_objects.apply_to(object.options);
-    object.splits = object.splits || options.parts;
-  }
-  split_parts(input);
+  apply_to_objects(options.given_objects, options.as_2007, options.parts, input);
   print_notes(input);
   check_output_names({{"--json", options.json}}, input.files);
   std::optional<JsonWriter> json;

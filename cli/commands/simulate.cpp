@@ -90,17 +90,105 @@ class Run {
         input_(input) {}
 
   void start_recording(const Input& input) { recorder_.start(options_.record, input); }
+
   /// Runs until the last step, an interruption or a blow-up. Returns the exit status.
-  int go();
+  int go() {
+    energies_at_start_ = objects_.energies();
+    if (const auto warning = objects_.warning_of_long_steps(); warning && ranks_.rank() == 0)
+      fmt::print(stderr, "supple: warning: {}: {}\n", one_line(options_.input), one_line(*warning));
+    Interruption interruption(options_.limits.seconds, [this](const Interruption& end) {
+      if (ranks_.size() > 1) return;
+      recorder_.close();
+      exit_now(end_early(end, Moment::in_a_step));
+    });
+    start_ = Clock::now();
+    const bool is_whole =
+        !is_ended(interruption, ranks_) && add_frame(interruption, objects_.detect(request_of(interruption)));
+    const bool stable = !is_whole || take_steps(interruption);
+    interruption.end();
+    energies_at_end_ = objects_.energies();
+    recorder_.close();
+    int status = exit_unusable;
+    ranks_.together([&] {
+      if (stable && frames_ < steps_ + 1) {
+        status = end_early(interruption, Moment::between_steps);
+        return;
+      }
+      finish(false);
+      if (reports_.has_tables()) print_energies(input_, energies_at_start_, energies_at_end_);
+      if (stable) status = reports_.exit_status();
+    });
+    return status;
+  }
 
  private:
-  bool take_steps(Interruption& interruption);
+  /// False when the motion blew up.
+  bool take_steps(Interruption& interruption) {
+    Progress progress(steps_, !options_.quiet, "step");
+    std::optional<std::string> fault;
+    while (objects_.step_count() < steps_ && !is_ended(interruption, ranks_)) {
+      if (is_continuous_) objects_.remember_positions();
+      try {
+        if (!add_frame(interruption, objects_.step(request_of(interruption)))) break;
+      } catch (const MotionError& error) {
+        fault = error.what();
+        break;
+      }
+      const std::uint64_t done = objects_.step_count();
+      progress.update(done, fmt::format("step {} of {}", done, steps_));
+    }
+    if (fault && ranks_.rank() == 0) fmt::print(stderr, "supple: {}: {}\n", one_line(options_.input), *fault);
+    return !fault;
+  }
+
   /// Returns false when the detection was stopped.
-  bool add_frame(Interruption& interruption, const DetectResult& result);
-  void finish(bool was_ended);
+  bool add_frame(Interruption& interruption, const DetectResult& result) {
+    if (result.stopped) return false;
+    const std::uint64_t number = objects_.step_count();
+    Frame frame{number, result};
+    frame.simulated = {objects_.time(), number == 0 ? 0 : objects_.motion_seconds()};
+    if (is_continuous_ && number > 0) frame.turned = objects_.turned();
+    if (options_.verify && !(number == 0 && is_continuous_))
+      frame.verify = objects_.verify({interruption.token()});
+    if (frame.verify && frame.verify->stopped) return false;
+    const auto hold = interruption.hold();
+    ranks_.together([&] {
+      recorder_.add(result);
+      reports_.add(frame);
+    });
+    recorder_.flush_if_due();
+    frames_ = number + 1;
+    time_ = objects_.time();
+    return true;
+  }
+
+  void finish(bool was_ended) {
+    if (reports_.has_tables() && frames_ > 0) {
+      const double seconds = std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 0.0);
+      const auto steps = static_cast<double>(frames_ - 1);
+      fmt::print("{} of {} s: {:.6g} s simulated in {:.3g} s, {:.3g} steps/s\n", counted(frames_ - 1, "step"),
+                 time_step_, time_, seconds, seconds > 0 ? steps / seconds : 0);
+    }
+    reports_.finish(was_ended);
+  }
+
   enum class Moment { between_steps, in_a_step };
+
   /// Reports the frames so far. Returns the exit status.
-  int end_early(const Interruption& interruption, Moment moment);
+  int end_early(const Interruption& interruption, Moment moment) {
+    finish(true);
+    if (ranks_.rank() != 0) return exit_done;
+    // In a step, another thread changes the simulation.
+    if (reports_.has_tables() && moment == Moment::between_steps)
+      print_energies(input_, energies_at_start_, energies_at_end_);
+    std::string place = fmt::format("{} of {}, {:.6g} s", grouped(frames_ == 0 ? 0 : frames_ - 1),
+                                    counted(steps_, "step"), time_);
+    if (!options_.record.empty())
+      place += fmt::format("; {} has {}", one_line(options_.record), counted(frames_, "frame"));
+    return report_end(interruption, options_.limits.seconds, place,
+                      interruption.signal() != 0 ? exit_done : reports_.exit_status());
+  }
+
   static DetectRequest request_of(const Interruption& interruption) { return {.stop = interruption.token()}; }
 
   const SimulateOptions& options_;
@@ -117,98 +205,6 @@ class Run {
   std::uint64_t frames_ = 0;  ///< that were added
   double time_ = 0;           ///< simulated, s, of the last of them
 };
-
-int Run::go() {
-  energies_at_start_ = objects_.energies();
-  if (const auto warning = objects_.warning_of_long_steps(); warning && ranks_.rank() == 0)
-    fmt::print(stderr, "supple: warning: {}: {}\n", one_line(options_.input), one_line(*warning));
-  Interruption interruption(options_.limits.seconds, [this](const Interruption& end) {
-    if (ranks_.size() > 1) return;
-    recorder_.close();
-    exit_now(end_early(end, Moment::in_a_step));
-  });
-  start_ = Clock::now();
-  const bool is_whole =
-      !is_ended(interruption, ranks_) && add_frame(interruption, objects_.detect(request_of(interruption)));
-  const bool stable = !is_whole || take_steps(interruption);
-  interruption.end();
-  energies_at_end_ = objects_.energies();
-  recorder_.close();
-  int status = exit_unusable;
-  ranks_.together([&] {
-    if (stable && frames_ < steps_ + 1) {
-      status = end_early(interruption, Moment::between_steps);
-      return;
-    }
-    finish(false);
-    if (reports_.has_tables()) print_energies(input_, energies_at_start_, energies_at_end_);
-    if (stable) status = reports_.exit_status();
-  });
-  return status;
-}
-
-/// False when the motion blew up.
-bool Run::take_steps(Interruption& interruption) {
-  Progress progress(steps_, !options_.quiet, "step");
-  std::optional<std::string> fault;
-  while (objects_.step_count() < steps_ && !is_ended(interruption, ranks_)) {
-    if (is_continuous_) objects_.remember_positions();
-    try {
-      if (!add_frame(interruption, objects_.step(request_of(interruption)))) break;
-    } catch (const MotionError& error) {
-      fault = error.what();
-      break;
-    }
-    const std::uint64_t done = objects_.step_count();
-    progress.update(done, fmt::format("step {} of {}", done, steps_));
-  }
-  if (fault && ranks_.rank() == 0) fmt::print(stderr, "supple: {}: {}\n", one_line(options_.input), *fault);
-  return !fault;
-}
-
-bool Run::add_frame(Interruption& interruption, const DetectResult& result) {
-  if (result.stopped) return false;
-  const std::uint64_t number = objects_.step_count();
-  Frame frame{number, result};
-  frame.simulated = {objects_.time(), number == 0 ? 0 : objects_.motion_seconds()};
-  if (is_continuous_ && number > 0) frame.turned = objects_.turned();
-  if (options_.verify && !(number == 0 && is_continuous_))
-    frame.verify = objects_.verify({interruption.token()});
-  if (frame.verify && frame.verify->stopped) return false;
-  const auto hold = interruption.hold();
-  ranks_.together([&] {
-    recorder_.add(result);
-    reports_.add(frame);
-  });
-  recorder_.flush_if_due();
-  frames_ = number + 1;
-  time_ = objects_.time();
-  return true;
-}
-
-void Run::finish(bool was_ended) {
-  if (reports_.has_tables() && frames_ > 0) {
-    const double seconds = std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 0.0);
-    const auto steps = static_cast<double>(frames_ - 1);
-    fmt::print("{} of {} s: {:.6g} s simulated in {:.3g} s, {:.3g} steps/s\n", counted(frames_ - 1, "step"),
-               time_step_, time_, seconds, seconds > 0 ? steps / seconds : 0);
-  }
-  reports_.finish(was_ended);
-}
-
-int Run::end_early(const Interruption& interruption, Moment moment) {
-  finish(true);
-  if (ranks_.rank() != 0) return exit_done;
-  // In a step, another thread changes the simulation.
-  if (reports_.has_tables() && moment == Moment::between_steps)
-    print_energies(input_, energies_at_start_, energies_at_end_);
-  std::string place = fmt::format("{} of {}, {:.6g} s", grouped(frames_ == 0 ? 0 : frames_ - 1),
-                                  counted(steps_, "step"), time_);
-  if (!options_.record.empty())
-    place += fmt::format("; {} has {}", one_line(options_.record), counted(frames_, "frame"));
-  return report_end(interruption, options_.limits.seconds, place,
-                    interruption.signal() != 0 ? exit_done : reports_.exit_status());
-}
 
 }  // namespace
 

@@ -74,7 +74,26 @@ class RowReader {
  public:
   explicit RowReader(const fs::path& path) : path_(path), stream_(open_input(path)) {}
 
-  std::optional<Row> next();
+  std::optional<Row> next() {
+    std::string line;
+    do {
+      if (!std::getline(stream_, line)) {
+        if (stream_.bad()) fail("reading failed; is the disk all right?");
+        return std::nullopt;
+      }
+      ++line_number_;
+    } while (trimmed(line).empty());
+    const std::vector<std::string_view> columns = columns_of(line);
+    check_column_count(columns.size());
+    Row row;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t column = 2 * static_cast<std::size_t>(axis);
+      row.point[axis] = coordinate("xyz"[axis], columns[column], columns[column + 1]);
+    }
+    if (columns.size() > columns_of_point) row.answer = answer(columns.back());
+    return row;
+  }
+
   std::uint64_t line_number() const { return line_number_; }
   template <class... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> what, Args&&... args) const {
@@ -82,73 +101,48 @@ class RowReader {
   }
 
  private:
-  Integer integer(std::string_view text) const;
-  double coordinate(char axis, std::string_view numerator, std::string_view denominator) const;
-  bool answer(std::string_view text) const;
-  void check_column_count(std::size_t count);
+  Integer integer(std::string_view text) const {
+    std::optional<Integer> value = parse_integer(text);
+    if (!value) fail("'{}' is not a whole number; a coordinate is numerator,denominator", shortened(text));
+    return *std::move(value);
+  }
+
+  double coordinate(char axis, std::string_view numerator, std::string_view denominator) const {
+    const auto fail_with = [&](const std::string& what) {
+      fail("{} = {}/{} {}", axis, shortened(numerator), shortened(denominator), what);
+    };
+    if (const std::optional<double> usual = exact_small_quotient(numerator, denominator)) return *usual;
+    const Integer top = integer(numerator), bottom = integer(denominator);
+    if (bottom == 0) fail_with("has the denominator 0; any other whole number is allowed");
+    // Boost's fractions have positive denominators.
+    const Rational value(bottom < 0 ? -top : top, abs(bottom));
+    const std::optional<double> exact = exact_double(value);
+    if (!exact) fail_with("is not the exact value of a double; " + advice_for(value));
+    return *exact;
+  }
+
+  bool answer(std::string_view text) const {
+    if (text != "0" && text != "1") fail("the answer '{}' must be 0 or 1", shortened(text));
+    return text == "1";
+  }
+
+  void check_column_count(std::size_t count) {
+    if (count != columns_of_point && count != columns_of_point + 1)
+      fail(
+          "has {} instead of 6 or 7: a row is numerator,denominator of x, y and z, and optionally "
+          "the answer, 0 or 1",
+          counted(count, "column"));
+    if (column_count_ == 0) column_count_ = count;
+    if (count != column_count_)
+      fail("has {} columns, but the first row has {}; all rows or no row must have the answer as column 7",
+           count, column_count_);
+  }
 
   const fs::path& path_;
   std::ifstream stream_;
   std::uint64_t line_number_ = 0;
   std::size_t column_count_ = 0;  ///< of the first row
 };
-
-std::optional<Row> RowReader::next() {
-  std::string line;
-  do {
-    if (!std::getline(stream_, line)) {
-      if (stream_.bad()) fail("reading failed; is the disk all right?");
-      return std::nullopt;
-    }
-    ++line_number_;
-  } while (trimmed(line).empty());
-  const std::vector<std::string_view> columns = columns_of(line);
-  check_column_count(columns.size());
-  Row row;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t column = 2 * static_cast<std::size_t>(axis);
-    row.point[axis] = coordinate("xyz"[axis], columns[column], columns[column + 1]);
-  }
-  if (columns.size() > columns_of_point) row.answer = answer(columns.back());
-  return row;
-}
-
-void RowReader::check_column_count(std::size_t count) {
-  if (count != columns_of_point && count != columns_of_point + 1)
-    fail(
-        "has {} instead of 6 or 7: a row is numerator,denominator of x, y and z, and optionally "
-        "the answer, 0 or 1",
-        counted(count, "column"));
-  if (column_count_ == 0) column_count_ = count;
-  if (count != column_count_)
-    fail("has {} columns, but the first row has {}; all rows or no row must have the answer as column 7",
-         count, column_count_);
-}
-
-Integer RowReader::integer(std::string_view text) const {
-  std::optional<Integer> value = parse_integer(text);
-  if (!value) fail("'{}' is not a whole number; a coordinate is numerator,denominator", shortened(text));
-  return *std::move(value);
-}
-
-double RowReader::coordinate(char axis, std::string_view numerator, std::string_view denominator) const {
-  const auto fail_with = [&](const std::string& what) {
-    fail("{} = {}/{} {}", axis, shortened(numerator), shortened(denominator), what);
-  };
-  if (const std::optional<double> usual = exact_small_quotient(numerator, denominator)) return *usual;
-  const Integer top = integer(numerator), bottom = integer(denominator);
-  if (bottom == 0) fail_with("has the denominator 0; any other whole number is allowed");
-  // Boost's fractions have positive denominators.
-  const Rational value(bottom < 0 ? -top : top, abs(bottom));
-  const std::optional<double> exact = exact_double(value);
-  if (!exact) fail_with("is not the exact value of a double; " + advice_for(value));
-  return *exact;
-}
-
-bool RowReader::answer(std::string_view text) const {
-  if (text != "0" && text != "1") fail("the answer '{}' must be 0 or 1", shortened(text));
-  return text == "1";
-}
 
 /// The rows of one query: v, f0, f1, f2 or a0, a1, b0, b1 at the start and then at the end.
 template <class Motion>

@@ -37,9 +37,7 @@ constexpr std::array outcomes_of_vertices{
 std::string describe(const Input& input, const auto& d, std::array<FeatureKind, 2> kinds,
                      const auto& outcomes) {
   const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
-    const std::string numbers =
-        kind == FeatureKind::edge ? fmt::format("{} {}", ids[0], ids[1]) : fmt::format("{}", ids[0]);
-    return fmt::format("{} {} of {}", word_of(kind), numbers, one_line(input.name(object)));
+    return fmt::format("{} of {}", element_name(kind, ids), one_line(input.name(object)));
   };
   return fmt::format("{} and {} {}", named(kinds[0], d.element_a, d.object_a),
                      named(kinds[1], d.element_b, d.object_b), outcomes[static_cast<std::size_t>(d.fault)]);
