@@ -1,10 +1,7 @@
 #include "base/text.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <string_view>
-#include <utility>
 
 #include "supple/result_descriptions.hpp"
 

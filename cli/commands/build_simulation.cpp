@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "inputs/inputs.hpp"
 #include "supple/comparison.hpp"
 
 namespace supple::cli {

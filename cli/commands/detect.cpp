@@ -16,7 +16,6 @@
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
 #include "inputs/inputs.hpp"
-#include "moving/ranks.hpp"
 #include "options/option_needs.hpp"
 #include "reports/reports.hpp"
 

@@ -21,7 +21,6 @@
 #include "commands/build_simulation.hpp"
 #include "commands/frame_recorder.hpp"
 #include "inputs/inputs.hpp"
-#include "moving/ranks.hpp"
 #include "reports/reports.hpp"
 
 namespace supple::cli {

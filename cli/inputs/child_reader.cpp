@@ -7,21 +7,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <new>
-#include <span>
-#include <string>
 
 #include "base/text.hpp"
 #include "supple/error.hpp"
-#include "supple/formats.hpp"
 
 namespace supple::cli {
 namespace {

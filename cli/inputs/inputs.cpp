@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -197,8 +195,7 @@ std::string note_of_reader(const fs::path& path) {
   if (lower_case_extension(path) != ".fbx" || !is_read_by_assimp(path)) return {};
   return one_line(
       fmt::format("{}: read through Assimp, because this build is without ufbx: the pose of rotated, scaled, "
-                  "deformed and "
-                  "animated nodes can be wrong; build with ufbx, or export it as glTF",
+                  "deformed and animated nodes can be wrong; build with ufbx, or export it as glTF",
                   path.string()));
 }
 

@@ -3,15 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <span>
-#include <string>
 #include <utility>
-#include <variant>
-#include <vector>
 
 #include "base/text.hpp"
 #include "supple/scene.hpp"
@@ -77,10 +70,8 @@ Motion motion_of_part(const InputObject& whole, const std::shared_ptr<WholeFrame
     std::erase_if(springs->handles,
                   [](const MassSpringMotion::Handle& handle) { return handle.vertices.empty(); });
   } else {
-    fail(
-        "{}: the frames of a recording have no parts; leave out the parts, or record again with "
-        "parts",
-        one_line(whole.mesh.name));
+    fail("{}: the frames of a recording have no parts; leave out the parts, or record again with parts",
+         one_line(whole.mesh.name));
   }
   return motion;
 }

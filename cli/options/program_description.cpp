@@ -1,10 +1,6 @@
 #include "options/option_groups.hpp"
 
-#include <CLI/CLI.hpp>
-#include <cstdint>
-#include <optional>
 #include <ranges>
-#include <string>
 #include <type_traits>
 
 #include "base/json_writer.hpp"

@@ -267,12 +267,8 @@ class Run {
     if (options_.kind == SceneQuery::inside) return json.value(word_of(contained_[i]));
     const auto found = found_triangle(i);
     if (!found) return json.null();
-    json.begin_array();
-    json.value(found->object.index);
-    json.value(found->triangle);
-    json.value(found->number);
-    if (found->hits) json.value(*found->hits);
-    json.end_array();
+    if (found->hits) return json.row(found->object.index, found->triangle, found->number, *found->hits);
+    json.row(found->object.index, found->triangle, found->number);
   }
 
   void print_result(std::size_t i) const {

@@ -6,8 +6,6 @@
 #include <array>
 #include <ranges>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"

@@ -1,10 +1,10 @@
 #include "reports/reports.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <array>
-#include <cstdint>
 #include <utility>
 
 #include "base/exit_status.hpp"
@@ -12,7 +12,6 @@
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
 #include "supple/result_descriptions.hpp"
-#include "supple/verify.hpp"
 
 namespace supple::cli {
 namespace {
@@ -78,15 +77,16 @@ Reports::Reports(const DetectionOptions& options, const Input& input, const Movi
       solid_parts_(describe_solid_parts(input)),
       tested_(input, input.simulation.scene.contacts) {
   if (options.json_content.node_pairs) check_node_pairs(input, *options.json_content.node_pairs);
-  if (!options.json.empty()) json_.emplace(options.json, input, objects, options.json_content);
-  if (!options.csv.empty()) csv_.emplace(options.csv, options.scene, options.json_content.contact_details);
+  if (!options.json.empty())
+    files_.push_back(make_json_report(options.json, input, objects, options.json_content));
+  if (!options.csv.empty())
+    files_.push_back(make_csv_report(options.csv, options.scene, options.json_content.contact_details));
   if (!options.quiet && options.json != "-" && options.csv != "-")
-    text_.emplace(std::move(noun), input, objects);
+    text_ = make_text_report(std::move(noun), input, objects, tested_);
 }
 
 void Reports::add(const Frame& frame) {
-  if (json_) json_->add(frame);
-  if (csv_) csv_->add(frame);
+  for (const auto& file : files_) file->add(frame);
   if (text_) text_->add(frame);
   tested_.add(frame);
   last_frame_ = frame.number;
@@ -99,8 +99,7 @@ void Reports::add(const Frame& frame) {
 
 void Reports::finish(bool was_ended) {
   was_ended_ = was_ended;
-  if (json_) json_->finish(was_ended);
-  if (csv_) csv_->finish(was_ended || truncated_frames_ > 0);
+  for (const auto& file : files_) file->finish(was_ended);
   if (truncated_frames_ > 0)
     fmt::print(stderr, "supple: {} more contacts than --max-contacts {}; the results are truncated\n",
                truncated_frames_ == 1 ? "a frame has" : counted(truncated_frames_, "frame") + " have",
@@ -109,7 +108,7 @@ void Reports::finish(bool was_ended) {
     if (!options_.quiet && !is_failing()) report_faults("warning");
     return;
   }
-  text_->print(tested_);
+  text_->finish(was_ended);
   if (!solid_parts_.empty()) fmt::print("\n{}\n", solid_parts_);
   if (const auto& objects = options_.json_content.node_pairs; objects && !was_ended)
     print_node_pairs(objects_.scene(), *objects, last_frame_);

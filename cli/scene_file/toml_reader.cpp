@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/text.hpp"
-
 namespace supple::cli {
 namespace {
 

@@ -11,13 +11,11 @@
 #include <map>
 #include <memory>
 #include <span>
-#include <string>
 #include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "base/files.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"

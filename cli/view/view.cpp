@@ -10,22 +10,17 @@
 #include <vector>
 
 #include "base/exit_status.hpp"
-#include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "base/run_program.hpp"
 #include "base/text.hpp"
-#include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
-#include "inputs/inputs.hpp"
 #include "server/access.hpp"
 #include "server/browser_visit.hpp"
 #include "server/server.hpp"
-#include "session/messages/mesh_warnings.hpp"
 #include "session/packed/packed_scene.hpp"
 #include "session/session.hpp"
 #include "view/build_scene_view.hpp"
-#include "view_file/view_file.hpp"
 
 namespace supple::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "scene/scene_implementation.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/verify.hpp"
-#include "verify/brute_force_queries.hpp"
+#include "verify/brute_force.hpp"
 
 namespace supple {
 namespace {

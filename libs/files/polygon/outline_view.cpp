@@ -1,4 +1,4 @@
-#include "files/polygon/outline_view.hpp"
+#include "files/polygon/outline.hpp"
 
 #include <algorithm>
 #include <array>
