@@ -64,12 +64,8 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
-std::string counted(std::uint64_t number, const std::string& noun) {
-  return counted(number, noun, noun + "s");
-}
-
 std::string counted(std::uint64_t number, const std::string& noun, const std::string& nouns) {
-  return fmt::format("{} {}", grouped(number), number == 1 ? noun : nouns);
+  return fmt::format("{} {}", grouped(number), number == 1 ? noun : nouns.empty() ? noun + "s" : nouns);
 }
 
 }  // namespace supple::cli

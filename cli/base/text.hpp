@@ -41,9 +41,7 @@ std::optional<std::string> nearest_of(const std::string& mistyped, const std::ve
 /// 1234567 as 1,234,567.
 std::string grouped(std::uint64_t number);
 
-/// `1 frame`, `2 frames`.
-std::string counted(std::uint64_t number, const std::string& noun);
-/// `1 query`, `2 queries`.
-std::string counted(std::uint64_t number, const std::string& noun, const std::string& nouns);
+/// `1 frame`, `2 frames`; with `nouns`, `1 query`, `2 queries`.
+std::string counted(std::uint64_t number, const std::string& noun, const std::string& nouns = "");
 
 }  // namespace supple::cli

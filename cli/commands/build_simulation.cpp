@@ -63,6 +63,13 @@ void apply_to_objects(const viewer::Overrides<ObjectOptions>& given, bool as_200
   split_parts(input);
 }
 
+RecordedObject recorded_object(ObjectId id, const InputObject& object) {
+  ObjectOptions options = object.options;
+  options.edges.insert(options.edges.end(), object.mesh.edges.begin(), object.mesh.edges.end());
+  options.points.insert(options.points.end(), object.mesh.points.begin(), object.mesh.points.end());
+  return {id, std::move(options), object.mesh.positions, object.mesh.triangles};
+}
+
 ObjectId add_positions(Simulation& simulation, const InputObject& object) {
   if (motion_of<MassSpringMotion>(object)) return add_object(simulation, object);
   const ObjectOptions options{.name = object.options.name};

@@ -9,7 +9,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <random>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/exit_status.hpp"
@@ -19,9 +22,9 @@
 #include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
-#include "commands/frame_recorder.hpp"
 #include "inputs/inputs.hpp"
 #include "reports/reports.hpp"
+#include "supple/recording.hpp"
 
 namespace supple::cli {
 namespace {
@@ -73,6 +76,86 @@ void print_energies(const Input& input, const std::vector<BodyEnergy>& start,
   if (end.size() > most_rows) fmt::print("and {} more\n", counted(end.size() - most_rows, "object"));
   if (end.size() > 1) print_energy("all", all_at_start, all);
 }
+
+RecordingHeader header_of(const Input& input, const MovingObjects& objects, const Ranks& ranks) {
+  RecordingHeader header;
+  header.ranks = static_cast<std::uint32_t>(ranks.size());
+  header.time_step = input.simulation.time_step;
+  header.scene = input.simulation.scene;
+  header.scene_file = input.scene_text;
+  for (std::uint32_t i = 0; i < input.objects.size(); ++i) {
+    const InputObject& object = input.objects[i];
+    if (const int rank = objects.rank_of({i}); rank != ranks.rank()) {
+      const RecordedElsewhere elsewhere{static_cast<std::uint32_t>(rank), object.mesh.positions.size(),
+                                        object.mesh.triangles.size()};
+      header.objects.push_back({{i}, object.options, {}, {}, elsewhere});
+      continue;
+    }
+    header.objects.push_back(recorded_object({i}, object));
+  }
+  return header;
+}
+
+/// Records a simulation frame by frame. Each rank writes the objects that it moves. All calls but `add` are
+/// collective.
+class FrameRecorder {
+ public:
+  FrameRecorder(Ranks& ranks, const MovingObjects& objects) : ranks_(ranks), objects_(objects) {}
+
+  /// Creates the files.
+  void start(const std::string& file_name, const Input& input) {
+    if (file_name.empty()) return;
+    is_on_ = true;
+    for (std::uint32_t i = 0; i < input.objects.size(); ++i) ids_.push_back({i});
+    const int rank = ranks_.rank();
+    const auto run = static_cast<std::uint32_t>(
+        ranks_.largest(rank == 0 ? static_cast<int>(std::random_device()() >> 1) : 0));
+    const auto create = [&] {
+      recorder_.emplace(file_name, header_of(input, objects_, ranks_),
+                        RecordingRank{static_cast<std::uint32_t>(rank), run});
+    };
+    ranks_.together([&] {
+      const auto is_own = [&](ObjectId object) { return objects_.rank_of(object) == rank; };
+      if (rank == 0 || std::ranges::any_of(ids_, is_own)) create();
+    });
+    ranks_.others_first([&] { flush(); });
+  }
+
+  /// Adds a frame: where the objects are now, and the result of the detection.
+  void add(const DetectResult& result) {
+    if (!recorder_) return;
+    positions_.clear();
+    for (const ObjectId object : ids_) {
+      const bool is_own = objects_.rank_of(object) == ranks_.rank();
+      positions_.push_back(is_own ? objects_.positions(object) : std::span<const Vec3d>());
+    }
+    recorder_->add(objects_.time(), positions_, result);
+  }
+
+  void flush_if_due() {
+    if (is_on_ && ranks_.largest(recorder_ && recorder_->needs_flush() ? 1 : 0) != 0)
+      ranks_.others_first([this] { flush(); });
+  }
+
+  void close() {
+    if (!is_on_) return;
+    ranks_.others_first([this] {
+      if (recorder_) recorder_->close();
+    });
+  }
+
+ private:
+  void flush() {
+    if (recorder_) recorder_->flush();
+  }
+
+  Ranks& ranks_;
+  const MovingObjects& objects_;
+  bool is_on_ = false;  ///< on all ranks
+  std::vector<ObjectId> ids_;
+  std::vector<std::span<const Vec3d>> positions_;
+  std::optional<Recorder> recorder_;  ///< on ranks that have objects, and on rank 0
+};
 
 /// A running simulation and its reports.
 class Run {

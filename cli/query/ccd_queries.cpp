@@ -47,8 +47,6 @@ struct QueryFileResult {
   std::vector<std::uint64_t> false_negatives, false_positives;
   double seconds_per_query = 0;
   std::vector<QueryDifference> differences;  ///< only with --verify
-
-  std::uint64_t false_answers() const { return false_negatives.size() + false_positives.size(); }
 };
 
 struct QueryPaths {
@@ -165,6 +163,7 @@ struct Totals {
     }
   }
 
+  std::uint64_t false_answers() const { return false_negatives + false_positives; }
   double seconds_per_query() const {
     return seconds / static_cast<double>(std::max<std::uint64_t>(queries, 1));
   }
@@ -197,14 +196,14 @@ void print_differences(const QueryFileResult& file) {
 }
 
 void print_comparison(const Totals& all) {
-  const std::uint64_t wrong = all.false_negatives + all.false_positives;
   if (all.queries == 0) {
     fmt::print("There are no queries.\n");
   } else if (all.compared == 0) {
     fmt::print("There are no answers to compare with.\n");
   } else {
-    fmt::print("{} compared with answers, {}\n", counted(all.compared, "query", "queries"),
-               wrong == 0 ? "none is false" : counted(wrong, "is false", "are false"));
+    fmt::print(
+        "{} compared with answers, {}\n", counted(all.compared, "query", "queries"),
+        all.false_answers() == 0 ? "none is false" : counted(all.false_answers(), "is false", "are false"));
     if (all.compared < all.queries)
       fmt::print("{} without an answer to compare with\n",
                  counted(all.queries - all.compared, "query", "queries"));
@@ -297,10 +296,8 @@ int run_ccd_queries(const CcdQueriesOptions& options) {
     json->close();
   }
   if (!options.quiet && options.json != "-") print_queries(results, options.verify, options.list_false);
-  const bool faultless = std::all_of(results.begin(), results.end(), [](const QueryFileResult& result) {
-    return result.false_answers() == 0 && result.differences.empty();
-  });
-  return faultless ? exit_done : exit_differences;
+  const Totals all(results);
+  return all.false_answers() + all.differences == 0 ? exit_done : exit_differences;
 }
 
 }  // namespace supple::cli
