@@ -14,7 +14,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "supple/comparison.hpp"

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "base/progress.hpp"

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/json_writer.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
 #include "inputs/inputs.hpp"

@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "base/progress.hpp"

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <exception>
 
-#include "base/exit_status.hpp"
 #include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"

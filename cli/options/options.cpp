@@ -8,7 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "base/exit_status.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "options/help_footers.hpp"

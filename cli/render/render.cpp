@@ -27,7 +27,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/exit_status.hpp"
 #include "base/interruption.hpp"
 #include "base/progress.hpp"
 #include "base/run_program.hpp"

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "base/exit_status.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/exit_status.hpp"
 #include "base/interruption.hpp"
 #include "base/run_program.hpp"
 #include "base/text.hpp"
@@ -21,6 +20,7 @@
 #include "session/packed/packed_scene.hpp"
 #include "session/session.hpp"
 #include "view/build_scene_view.hpp"
+#include "view_file/view_file.hpp"
 
 namespace supple::cli {
 namespace {
