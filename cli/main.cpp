@@ -1,9 +1,8 @@
 #include <string_view>
-#include <vector>
 
 #include "base/run_program.hpp"
+#include "base/text.hpp"
 #include "commands/commands.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -37,7 +36,7 @@ int run(const CommandLine& line) {
 /// Continues as the program of experiments. Throws `Error` when there is none.
 [[noreturn]] void run_experiments(char** arguments) {
   become_program("supple-experiment", arguments);
-  throw Error(
+  fail(
       "the program supple-experiment is neither beside this program nor in PATH; build it by: cmake --build "
       "--preset release --target supple_experiment");
 }

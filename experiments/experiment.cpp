@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/exit_status.hpp"
 #include "base/interruption.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "program_2007/ablation.hpp"
 #include "program_2007/figures.hpp"

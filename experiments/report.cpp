@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
+#include "base/run_program.hpp"
 #include "machine.hpp"
 #include "supple/error.hpp"
 

@@ -24,7 +24,6 @@
 #include <vector>
 
 #include "commands/build_simulation.hpp"
-#include "commands/frame_recorder.hpp"
 #include "scene_file/scene_file.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"

@@ -1,16 +1,12 @@
 #include "base/files.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <string>
 #include <system_error>
 
 #include "base/text.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -34,18 +30,16 @@ std::ifstream open_input(const fs::path& path) {
   std::error_code fault;
   const fs::file_status kind = fs::status(path, fault);
   if (kind.type() == fs::file_type::not_found)
-    throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", name));
+    fail("{}: there is no such file; check the folder and the spelling", name);
   // A pipe of the shell is in no folder. Other pipes can wait for a writer forever.
   const bool is_of_shell = fs::is_fifo(kind) && fs::canonical(path, fault).empty();
   if (fs::status_known(kind) && !fs::is_regular_file(kind) && !is_of_shell)
-    throw Error(fmt::format("{}: is not a regular file but {}; give a file", name,
-                            fs::is_directory(kind) ? "a folder"
-                            : fs::is_fifo(kind)    ? "a named pipe"
-                                                   : "a device"));
+    fail("{}: is not a regular file but {}; give a file", name,
+         fs::is_directory(kind) ? "a folder"
+         : fs::is_fifo(kind)    ? "a named pipe"
+                                : "a device");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    throw Error(
-        fmt::format("{}: cannot read: {}; check the path and who may read it", name, std::strerror(errno)));
+  if (!stream) fail("{}: cannot read: {}; check the path and who may read it", name, std::strerror(errno));
   return stream;
 }
 
@@ -57,16 +51,15 @@ std::string read_text(const fs::path& path, std::size_t most) {
     stream.read(part.data(), static_cast<std::streamsize>(std::min(part.size(), most - text.size())));
     text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
   }
-  if (stream.bad())
-    throw Error(fmt::format("{}: cannot be read to its end; check the disk", one_line(path.string())));
+  if (stream.bad()) fail("{}: cannot be read to its end; check the disk", one_line(path.string()));
   return text;
 }
 
 OutputFile::OutputFile(const std::string& name, Mode mode) : name_(name == "-" ? "standard output" : name) {
   stream_ = name == "-" ? stdout : std::fopen(name.c_str(), mode == Mode::append ? "ab" : "wb");
   if (!stream_)
-    throw Error(fmt::format("{}: cannot write: {}; choose a file in a folder that exists and is yours", name_,
-                            std::strerror(errno)));
+    fail("{}: cannot write: {}; choose a file in a folder that exists and is yours", name_,
+         std::strerror(errno));
 }
 
 OutputFile::~OutputFile() {
@@ -74,7 +67,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::check() const {
-  if (std::ferror(stream_)) throw Error(fmt::format("{}: writing failed; is the disk full?", name_));
+  if (std::ferror(stream_)) fail("{}: writing failed; is the disk full?", name_);
 }
 
 void OutputFile::close() {
@@ -82,7 +75,7 @@ void OutputFile::close() {
   const bool written = !std::ferror(stream_) && flushed;
   const bool closed = stream_ == stdout || std::fclose(stream_) == 0;
   stream_ = nullptr;
-  if (!written || !closed) throw Error(fmt::format("{}: writing failed; is the disk full?", name_));
+  if (!written || !closed) fail("{}: writing failed; is the disk full?", name_);
 }
 
 void check_output_names(std::initializer_list<OutputName> outputs, std::span<const fs::path> inputs) {
@@ -90,12 +83,11 @@ void check_output_names(std::initializer_list<OutputName> outputs, std::span<con
     if (output.name.empty() || output.name == "-") continue;
     if (std::any_of(inputs.begin(), inputs.end(),
                     [&](const fs::path& input) { return are_one_file(input, output.name); }))
-      throw Error(fmt::format("{}: {} is an input; choose another file", output.option, output.name));
+      fail("{}: {} is an input; choose another file", output.option, output.name);
     for (const OutputName& other : outputs) {
       if (&other == &output) break;
       if (!other.name.empty() && other.name != "-" && are_one_file(other.name, output.name))
-        throw Error(fmt::format("{}: {} already writes {}; choose another file", output.option, other.option,
-                                output.name));
+        fail("{}: {} already writes {}; choose another file", output.option, other.option, output.name);
     }
   }
 }

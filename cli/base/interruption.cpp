@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/exit_status.hpp"
+#include "base/run_program.hpp"
 
 namespace supple::cli {
 namespace {

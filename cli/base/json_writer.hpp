@@ -1,25 +1,41 @@
 #pragma once
 
+#include <fmt/core.h>
 #include <rapidjson/filewritestream.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/files.hpp"
 #include "session/messages/json_output.hpp"
+#include "supple/version.hpp"
 
 namespace supple::cli {
 
 /// Writes the fewest digits that read back to the same bits, or "nan", "inf" or "-inf".
 struct DoublesOrWords {
-  static void write(rapidjson::Writer<rapidjson::FileWriteStream>& writer, double number);
+  static void write(rapidjson::Writer<rapidjson::FileWriteStream>& writer, double number) {
+    if (!std::isfinite(number)) {
+      writer.String(std::isnan(number) ? "nan" : number > 0 ? "inf" : "-inf");
+      return;
+    }
+    char digits[32];
+    const auto end = fmt::format_to_n(digits, sizeof digits, "{}", number);
+    writer.RawValue(digits, end.size, rapidjson::kNumberType);
+  }
 };
 
 /// Streams a JSON object to a file without holding it in memory. Its first member is the version.
 class JsonWriter : public viewer::JsonOutput<rapidjson::FileWriteStream, DoublesOrWords> {
  public:
-  explicit JsonWriter(const std::string& file_name);
+  explicit JsonWriter(const std::string& file_name)
+      : file_(file_name), buffer_(1 << 16), stream_(file_.stream(), buffer_.data(), buffer_.size()) {
+    begin(stream_);
+    begin_object();
+    member("supple", SUPPLE_VERSION);
+  }
 
   using JsonOutput::member;
   /// Null when there is no value.
@@ -27,6 +43,13 @@ class JsonWriter : public viewer::JsonOutput<rapidjson::FileWriteStream, Doubles
   void member(const char* name, const std::optional<Value>& v) {
     key(name);
     v ? value(*v) : null();
+  }
+  /// Writes an array of these values.
+  template <class... Values>
+  void row(const Values&... values) {
+    begin_array();
+    (value(values), ...);
+    end_array();
   }
   /// `write()` writes the members of the object.
   template <class Write>
@@ -63,9 +86,17 @@ class JsonWriter : public viewer::JsonOutput<rapidjson::FileWriteStream, Doubles
   }
 
   /// Writes the buffer to the file. Throws `Error` when that fails.
-  void flush();
+  void flush() {
+    stream_.Flush();
+    file_.check();
+  }
   /// Ends the object.
-  void close();
+  void close() {
+    end_object();
+    stream_.Put('\n');
+    stream_.Flush();
+    file_.close();
+  }
 
  private:
   OutputFile file_;

@@ -14,11 +14,9 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "supple/comparison.hpp"
-#include "supple/error.hpp"
 #include "supple/threads.hpp"
 #include "supple/use_manifolds.hpp"
 
@@ -140,10 +138,10 @@ void run_as_rank(const LaunchedProcess& process, char** arguments) {
   become_program("supple-mpi", arguments);
   // Rank 0 reports it. The launcher ends the job at the first status that is not 0.
   if (process.rank != 0) std::_Exit(exit_done);
-  throw Error(fmt::format(
+  fail(
       "was started as {} processes, but the program supple-mpi is neither beside this program nor in PATH; "
       "build it with MPI and Zoltan, or start one process, without the launcher",
-      process.size));
+      process.size);
 }
 
 void warn_of_missing_threads(std::uint32_t threads) {

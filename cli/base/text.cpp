@@ -1,10 +1,9 @@
 #include "base/text.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <string_view>
-#include <utility>
+
+#include "supple/result_descriptions.hpp"
 
 namespace supple::cli {
 namespace {
@@ -49,6 +48,11 @@ std::string name_of(Feature feature) {
   return fmt::format("{}{}", feature.kind == FeatureKind::vertex ? 'v' : 'e', feature.index);
 }
 
+std::string element_name(FeatureKind kind, const std::array<std::uint32_t, 2>& ids) {
+  const std::string name = fmt::format("{} {}", word_of(kind), ids[0]);
+  return kind == FeatureKind::edge ? fmt::format("{} {}", name, ids[1]) : name;
+}
+
 std::string kind_word(FeatureKind a, FeatureKind b) {
   constexpr std::string_view letters = "vef";
   return {letters[static_cast<std::size_t>(a)], letters[static_cast<std::size_t>(b)]};
@@ -60,12 +64,8 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
-std::string counted(std::uint64_t number, const std::string& noun) {
-  return counted(number, noun, noun + "s");
-}
-
 std::string counted(std::uint64_t number, const std::string& noun, const std::string& nouns) {
-  return fmt::format("{} {}", grouped(number), number == 1 ? noun : nouns);
+  return fmt::format("{} {}", grouped(number), number == 1 ? noun : nouns.empty() ? noun + "s" : nouns);
 }
 
 }  // namespace supple::cli

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "inputs/inputs.hpp"
 #include "supple/comparison.hpp"
 
 namespace supple::cli {
@@ -52,17 +51,27 @@ void apply(const MethodOptions& options, Input& input) {
   input.simulation.scene = options.scene;
   input.simulation.scene.contacts = with_included(options.scene.contacts);
   input.simulation.fused_refit = options.fused_refit.value_or(false);
+  apply_to_objects(options.given_objects, options.as_2007, options.parts, input);
+}
+
+void apply_to_objects(const viewer::Overrides<ObjectOptions>& given, bool as_2007, bool parts, Input& input) {
   for (InputObject& object : input.objects) {
-    if (options.as_2007) object.options.octree = octree_of_2007();
-    options.given_objects.apply_to(object.options);
-    object.splits = object.splits || options.parts;
+    if (as_2007) object.options.octree = octree_of_2007();
+    given.apply_to(object.options);
+    object.splits = object.splits || parts;
   }
   split_parts(input);
 }
 
+RecordedObject recorded_object(ObjectId id, const InputObject& object) {
+  ObjectOptions options = object.options;
+  options.edges.insert(options.edges.end(), object.mesh.edges.begin(), object.mesh.edges.end());
+  options.points.insert(options.points.end(), object.mesh.points.begin(), object.mesh.points.end());
+  return {id, std::move(options), object.mesh.positions, object.mesh.triangles};
+}
+
 ObjectId add_positions(Simulation& simulation, const InputObject& object) {
-  if (object.motion && std::holds_alternative<MassSpringMotion>(*object.motion))
-    return add_object(simulation, object);
+  if (motion_of<MassSpringMotion>(object)) return add_object(simulation, object);
   const ObjectOptions options{.name = object.options.name};
   Adder adder{simulation, object, options, true};
   return object.motion ? std::visit(adder, *object.motion) : adder.add();

@@ -2,12 +2,18 @@
 
 #include "inputs/inputs.hpp"
 #include "options/options.hpp"
+#include "supple/recording.hpp"
 #include "supple/simulation.hpp"
 
 namespace supple::cli {
 
 /// Replaces options of the input by those of the command line.
 void apply(const MethodOptions& options, Input& input);
+/// Replaces options of all objects, and splits the objects into their parts where wanted.
+void apply_to_objects(const viewer::Overrides<ObjectOptions>& given, bool as_2007, bool parts, Input& input);
+
+/// An object of an input, for the header of a recording.
+RecordedObject recorded_object(ObjectId id, const InputObject& object);
 
 /// Adds an object of an input at its start positions. Throws `Error` as `Simulation::add` does, or when a
 /// frame of a sequence does not fit the object.

@@ -6,10 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "base/progress.hpp"
@@ -17,10 +15,8 @@
 #include "base/text.hpp"
 #include "commands/build_simulation.hpp"
 #include "inputs/inputs.hpp"
-#include "moving/ranks.hpp"
 #include "options/option_needs.hpp"
 #include "reports/reports.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -49,14 +45,13 @@ std::uint64_t count_frames(const Input& input, const DetectOptions& options) {
     frames = std::max<std::uint64_t>(longest_sequence(input), continuous ? 2 : 1);
   if (options.frames) {
     if (!is_scene && *options.frames > frames)
-      throw Error(fmt::format("--frames: {} has {}; give at most that number",
-                              input.frames ? input.frames->name : options.inputs.front(),
-                              counted(frames, "frame")));
+      fail("--frames: {} has {}; give at most that number",
+           input.frames ? input.frames->name : options.inputs.front(), counted(frames, "frame"));
     frames = *options.frames;
   }
   if (continuous && frames == 1 && (input.frames || moves(input)))
-    throw Error(fmt::format("{}: one frame has no motion; continuous contacts need at least two frames",
-                            input.frames ? input.frames->name : options.inputs.front()));
+    fail("{}: one frame has no motion; continuous contacts need at least two frames",
+         input.frames ? input.frames->name : options.inputs.front());
   return frames;
 }
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/json_writer.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "supple/recording.hpp"
 

@@ -1,7 +1,6 @@
 #include "commands/commands.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -10,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/json_writer.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
+#include "commands/build_simulation.hpp"
 #include "inputs/inputs.hpp"
 #include "session/messages/described_json.hpp"
-#include "supple/comparison.hpp"
 #include "supple/inspection.hpp"
 #include "supple/inspection_descriptions.hpp"
 #include "supple/orientation.hpp"
@@ -29,47 +28,37 @@ namespace {
 
 /// All reported data of one object.
 struct MeshInfo {
-  std::string name;
+  const TriangleMesh& mesh;
   MeshTopology topology;
   bool is_open_at_seams = false;
   std::uint64_t inward_triangles = 0;
-  std::uint64_t lines = 0, points = 0;  ///< edges and points of no triangle
-  PolygonCounts polygons;
   std::uint64_t non_finite_vertices = 0;
-  std::optional<std::array<Vec3d, 2>> bounds;  ///< of the finite vertices; none when no vertex is finite
+  std::optional<std::array<Vec3d, 2>> bounds{};  ///< of the finite vertices; none when no vertex is finite
   std::uint32_t arity = 0;
-  OctreeStatistics octree;
-};
+  OctreeStatistics octree{};
 
-void measure_positions(const TriangleMesh& mesh, MeshInfo& info) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::array<Vec3d, 2> bounds{Vec3d{infinity, infinity, infinity}, Vec3d{-infinity, -infinity, -infinity}};
-  for (const Vec3d& p : mesh.positions) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      ++info.non_finite_vertices;
-      continue;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      bounds[0][axis] = std::fmin(bounds[0][axis], p[axis]);
-      bounds[1][axis] = std::fmax(bounds[1][axis], p[axis]);
-    }
-  }
-  if (info.non_finite_vertices < mesh.positions.size()) info.bounds = bounds;
-}
+  /// Edges and points of no triangle are in the octree, too.
+  bool has_lines() const { return !mesh.edges.empty() || !mesh.points.empty(); }
+};
 
 MeshInfo measure(const InputObject& object, SceneOptions scene_options, const InfoOptions& options) {
   ObjectOptions chosen = object.options;
   options.given_objects.apply_to(chosen);
   const TriangleMesh surface = chosen.weld ? welded(object.mesh) : object.mesh;
-  MeshInfo info;
-  info.name = object.mesh.name;
-  info.topology = compute_topology(surface);
-  info.is_open_at_seams = is_open_at_seams(surface);
-  info.inward_triangles = count_inward_triangles(surface);
-  info.lines = object.mesh.edges.size();
-  info.points = object.mesh.points.size();
-  info.polygons = object.mesh.polygons;
-  measure_positions(object.mesh, info);
+  MeshInfo info{object.mesh, compute_topology(surface), is_open_at_seams(surface),
+                count_inward_triangles(surface)};
+  for (const Vec3d& p : object.mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      ++info.non_finite_vertices;
+      continue;
+    }
+    if (!info.bounds) info.bounds = {p, p};
+    auto& [lowest, highest] = *info.bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+      lowest[axis] = std::fmin(lowest[axis], p[axis]);
+      highest[axis] = std::fmax(highest[axis], p[axis]);
+    }
+  }
   info.arity = chosen.octree.arity;
   scene_options.threads = 1;
   options.given_scene.apply_to(scene_options);
@@ -94,16 +83,18 @@ std::string describe_polygons(const PolygonCounts& polygons) {
 
 void print_text(const MeshInfo& info) {
   const MeshTopology& t = info.topology;
-  fmt::print("{}\n", one_line(info.name));
+  fmt::print("{}\n", one_line(info.mesh.name));
   fmt::print("  vertices     {}", grouped(t.vertices));
   if (t.unused_vertices > 0) fmt::print(", {} in no triangle", grouped(t.unused_vertices));
   if (info.non_finite_vertices > 0) fmt::print(", {} not finite", grouped(info.non_finite_vertices));
   fmt::print("\n  triangles    {}", grouped(t.triangles));
   if (t.degenerate_triangles > 0) fmt::print(", {} with a repeated vertex", grouped(t.degenerate_triangles));
-  if (info.polygons != PolygonCounts{}) fmt::print("\n  polygons     {}", describe_polygons(info.polygons));
+  if (info.mesh.polygons != PolygonCounts{})
+    fmt::print("\n  polygons     {}", describe_polygons(info.mesh.polygons));
   fmt::print("\n  edges        {}\n", grouped(t.edges));
-  if (info.lines + info.points > 0)
-    fmt::print("  lines        {}, and {}\n", counted(info.lines, "edge"), counted(info.points, "point"));
+  if (info.has_lines())
+    fmt::print("  lines        {}, and {}\n", counted(info.mesh.edges.size(), "edge"),
+               counted(info.mesh.points.size(), "point"));
   fmt::print("  surface      {}\n", describe_surface(t));
   if (info.is_open_at_seams)
     fmt::print(
@@ -118,8 +109,7 @@ void print_text(const MeshInfo& info) {
                highest.y, highest.z);
   }
   const OctreeStatistics& o = info.octree;
-  // Edges and points of no triangle are in the octree, too.
-  const char* const item = info.lines + info.points > 0 ? "element" : "triangle";
+  const char* const item = info.has_lines() ? "element" : "triangle";
   fmt::print(
       "  octree       {}, {}, depth {}, {:.1f} {}s per leaf (largest {}), {:.1f} of {} children per node\n",
       counted(o.nodes, "node"), o.leaves == 1 ? "1 leaf" : grouped(o.leaves) + " leaves", o.depth,
@@ -130,13 +120,13 @@ void print_text(const MeshInfo& info) {
 
 void write_json(JsonWriter& json, const MeshInfo& info) {
   const MeshTopology& t = info.topology;
-  json.member("name", info.name);
+  json.member("name", info.mesh.name);
   json.member("vertices", t.vertices);
   json.member("triangles", t.triangles);
-  json.object("polygons", [&] { viewer::write_members(json, info.polygons); });
+  json.object("polygons", [&] { viewer::write_members(json, info.mesh.polygons); });
   json.member("edges", t.edges);
-  json.member("lines", info.lines);
-  json.member("points", info.points);
+  json.member("lines", std::uint64_t{info.mesh.edges.size()});
+  json.member("points", std::uint64_t{info.mesh.points.size()});
   json.member("closed", t.closed());
   json.member("boundary_edges", t.boundary_edges);
   json.member("odd_edges", t.odd_edges);
@@ -156,12 +146,7 @@ void write_json(JsonWriter& json, const MeshInfo& info) {
 
 int run_info(const InfoOptions& options) {
   Input input = read_objects(options.inputs, {}, {options.conversion, {}, {}});
-  for (InputObject& object : input.objects) {
-    if (options.as_2007) object.options.octree = octree_of_2007();
-    options.given_objects.apply_to(object.options);
-    object.splits = object.splits || options.parts;
-  }
-  split_parts(input);
+  apply_to_objects(options.given_objects, options.as_2007, options.parts, input);
   print_notes(input);
   check_output_names({{"--json", options.json}}, input.files);
   std::optional<JsonWriter> json;

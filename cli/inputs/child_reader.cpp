@@ -1,28 +1,22 @@
 #include "inputs/frame_files.hpp"
 
 #include <fcntl.h>
-#include <fmt/core.h>
 #ifdef __linux__
 #include <sys/prctl.h>
 #endif
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <new>
-#include <span>
-#include <string>
 
 #include "base/text.hpp"
 #include "supple/error.hpp"
-#include "supple/formats.hpp"
 
 namespace supple::cli {
 namespace {
@@ -35,7 +29,7 @@ class Pipe {
   Pipe() {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0)
-      throw Error(fmt::format("cannot create a pipe: {}; close some files", std::strerror(errno)));
+      fail("cannot create a pipe: {}; close some files", std::strerror(errno));
     read_end.reset(fdopen(ends[0], "rb"));
     write_end.reset(fdopen(ends[1], "wb"));
     if (!read_end || !write_end) throw std::bad_alloc();
@@ -113,9 +107,7 @@ bool read_file(std::FILE* stream, MeshFile& file) {
 MeshFile read_in_child(const std::filesystem::path& path) {
   Pipe pipe;
   const pid_t child = fork();
-  if (child < 0)
-    throw Error(
-        fmt::format("{}: cannot start a process that reads it: {}", path.string(), std::strerror(errno)));
+  if (child < 0) fail("{}: cannot start a process that reads it: {}", path.string(), std::strerror(errno));
   if (child == 0) run_child(pipe, path);
   pipe.write_end.reset();
   MeshFile file;
@@ -133,10 +125,10 @@ MeshFile read_in_child(const std::filesystem::path& path) {
     if (answer == Answer::out_of_memory) throw std::bad_alloc();
     return file;
   }
-  throw Error(
-      one_line(fmt::format("{}: Assimp, the library that reads this format, crashed. The file may be fine; "
-                           "export it as glTF, OBJ or PLY instead",
-                           path.string())));
+  fail(
+      "{}: Assimp, the library that reads this format, crashed. The file may be fine; "
+      "export it as glTF, OBJ or PLY instead",
+      path.string());
 }
 
 }  // namespace supple::cli

@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "base/text.hpp"
-#include "supple/error.hpp"
 #include "supple/point_cache.hpp"
 
 namespace supple::cli {
@@ -26,14 +24,11 @@ std::vector<std::string> names_of(const AnimatedMesh& animation) {
 ClipPlayer::ClipPlayer(const std::filesystem::path& path, const std::optional<std::string>& clip)
     : file_(path.string()), animation_(path) {
   const std::vector<std::string> names = names_of(animation_);
-  if (names.empty())
-    throw Error(
-        one_line(fmt::format("{}: has no clips; it is a mesh without an animation that moves it", file_)));
+  if (names.empty()) fail("{}: has no clips; it is a mesh without an animation that moves it", file_);
   if (!clip) return;
   const auto found = std::find(names.begin(), names.end(), one_line(*clip));
   if (found == names.end())
-    throw Error(one_line(
-        fmt::format("{}: has no clip '{}'; choose one of {}", file_, *clip, fmt::join(names, ", "))));
+    fail("{}: has no clip '{}'; choose one of {}", file_, *clip, fmt::join(names, ", "));
   clip_ = static_cast<std::size_t>(found - names.begin());
 }
 
@@ -64,9 +59,8 @@ ComputedMotion ClipPlayer::frames(const ClipOptions& options, const CoordinateCo
   // A clip of 1 s has 26 frames at 25 per second, also when the quotient is rounded.
   const double steps = std::floor(seconds * fps * (1 + 1e-12));
   if (steps >= most_frames)
-    throw Error(
-        one_line(fmt::format("{}: the clip has {} s, which are more than {:.0f} frames; give a lower --fps",
-                             file_, seconds, most_frames)));
+    fail("{}: the clip has {} s, which are more than {:.0f} frames; give a lower --fps", file_, seconds,
+         most_frames);
   return {static_cast<std::uint64_t>(steps) + 1,
           [*this, start, fps, conversion](std::uint64_t frame, std::span<Vec3d> positions) {
             pose(start + static_cast<double>(frame) / fps, conversion, positions);
@@ -91,9 +85,8 @@ ComputedMotion play_cache(const std::filesystem::path& path, std::size_t vertice
                           const Placement& placement) {
   const PointCache cache(path);
   if (cache.vertex_count() != vertices)
-    throw Error(
-        one_line(fmt::format("{}: has {} vertices, but the mesh has {}; export both from the same mesh",
-                             path.string(), cache.vertex_count(), vertices)));
+    fail("{}: has {} vertices, but the mesh has {}; export both from the same mesh", path.string(),
+         cache.vertex_count(), vertices);
   return {cache.frame_count(), [=](std::uint64_t frame, std::span<Vec3d> positions) {
             const std::uint64_t count = cache.frame_count();
             cache.positions(loop ? frame % count : std::min(frame, count - 1), positions);

@@ -1,13 +1,10 @@
 #include "inputs/frame_files.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cctype>
 #include <utility>
 
 #include "base/text.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 
@@ -20,8 +17,7 @@ std::string lower_case_extension(const std::filesystem::path& path) {
 
 MeshFile read_mesh(const std::filesystem::path& path, const CoordinateConversion& conversion) {
   if (!std::filesystem::exists(path))
-    throw Error(
-        one_line(fmt::format("{}: there is no such file; check the folder and the spelling", path.string())));
+    fail("{}: there is no such file; check the folder and the spelling", path.string());
   MeshFile file = is_read_by_assimp(path) ? read_in_child(path) : read_mesh_file(path);
   convert(file.mesh.positions, file.frame, conversion);
   return file;
@@ -60,7 +56,7 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   if (sequence_.placement && sequence_.placement->mirrors()) turn_over(mesh.triangles);
   const auto check_count = [&](const char* what, std::size_t given, std::size_t expected) {
     if (given == expected) return;
-    throw Error(fmt::format("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice));
+    fail("{}: has {} {}, but {} has {}; {}", name, given, what, first, expected, advice);
   };
   const bool has_ids = stores_vertex_ids(file);
   if (has_ids) check_count("vertices", mesh.positions.size(), vertex_count_);
@@ -70,8 +66,8 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
     if (!has_ids) return;
     const auto difference = std::mismatch(given.begin(), given.end(), expected.begin()).first;
     if (difference != given.end())
-      throw Error(fmt::format("{}: {} {} has different vertices than in {}; {}", name, one,
-                              difference - given.begin(), first, advice));
+      fail("{}: {} {} has different vertices than in {}; {}", name, one, difference - given.begin(), first,
+           advice);
   };
   check_elements("triangle", "triangles", mesh.triangles, triangles_);
   check_elements("line", "lines", mesh.edges, edges_);
@@ -79,10 +75,10 @@ void FrameFiles::read(std::uint64_t step, std::span<Vec3d> positions) const {
   if (has_ids) {
     std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin());
   } else if (const auto parted = place_by_corners(mesh, positions)) {
-    throw Error(
-        fmt::format("{}: corners of vertex {} part, which are at one place in {}; save the frames in a "
-                    "format with vertex ids, such as PLY",
-                    name, *parted, first));
+    fail(
+        "{}: corners of vertex {} part, which are at one place in {}; save the frames in a "
+        "format with vertex ids, such as PLY",
+        name, *parted, first);
   }
   if (sequence_.placement) place(positions, *sequence_.placement);
 }

@@ -1,11 +1,9 @@
 #include "inputs/half_turns.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <variant>
 
 namespace supple::cli {
 namespace {
@@ -65,32 +63,6 @@ bool turns_too_far(std::span<const Vec3d> from, std::span<const Vec3d> to) {
     square_of_cosine += rotations.eigenvectors()(0, i) * rotations.eigenvectors()(0, i);
   }
   return fits && square_of_cosine < square_of_cosine_of_60_degrees;
-}
-
-HalfTurns::HalfTurns(const Simulation& simulation, const Input& input)
-    : simulation_(simulation), objects_(simulation.scene().objects()), before_(objects_.size()) {
-  for (const InputObject& object : input.objects) {
-    const auto* const rigid = object.motion ? std::get_if<RigidMotion>(&*object.motion) : nullptr;
-    // The random spin has any direction.
-    const double least_spin = rigid != nullptr ? std::fabs(norm(rigid->spin) - rigid->random_spin) : 0;
-    spins_.push_back(least_spin * simulation.options().time_step > 120);
-  }
-}
-
-void HalfTurns::remember_positions() {
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    const std::span<const Vec3d> positions = simulation_.positions(objects_[i]);
-    before_[i].assign(positions.begin(), positions.end());
-  }
-}
-
-std::vector<ObjectId> HalfTurns::find() const {
-  std::vector<ObjectId> turned;
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    if (spins_[i] || turns_too_far(before_[i], simulation_.positions(objects_[i])))
-      turned.push_back(objects_[i]);
-  }
-  return turned;
 }
 
 }  // namespace supple::cli

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -15,7 +13,6 @@
 #include "base/text.hpp"
 #include "inputs/clips.hpp"
 #include "scene_file/scene_file.hpp"
-#include "supple/error.hpp"
 #include "supple/formats.hpp"
 
 namespace supple::cli {
@@ -53,8 +50,7 @@ std::vector<fs::path> files_that_match(const std::string& pattern) {
   std::vector<std::string> names(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   globfree(&found);
   if (status != 0 || names.empty())
-    throw Error(one_line(
-        fmt::format("{}: no file matches this pattern; check the folder and the spelling", pattern)));
+    fail("{}: no file matches this pattern; check the folder and the spelling", pattern);
   std::sort(names.begin(), names.end(), natural_less);
   return {names.begin(), names.end()};
 }
@@ -84,15 +80,13 @@ struct NumberedName {
     if (std::binary_search(known.begin(), known.end(), lower_case_extension(entry.path())))
       names.push_back(entry.path().filename().string());
   }
-  if (names.empty())
-    throw Error(
-        one_line(fmt::format("{}: is a folder without mesh files; give mesh files", folder.string())));
+  if (names.empty()) fail("{}: is a folder without mesh files; give mesh files", folder.string());
   const std::string first = *std::min_element(names.begin(), names.end(), natural_less);
   const NumberedName name(first);
   const std::string pattern = name.digits.empty() ? '*' + fs::path(first).extension().string()
                                                   : fmt::format("{}*{}", name.before, name.after);
-  throw Error(one_line(fmt::format("{}: is a folder; give its files as a quoted pattern: '{}'",
-                                   folder.string(), (folder / pattern).string())));
+  fail("{}: is a folder; give its files as a quoted pattern: '{}'", folder.string(),
+       (folder / pattern).string());
 }
 
 /// Refuses names such as frame_%04d.obj and frame_####.obj, which other programs replace by numbers.
@@ -105,9 +99,8 @@ void refuse_number_format(const std::string& name) {
     if (end == name.size() || (name[end] != 'd' && name[end] != 'i' && name[end] != 'u')) return;
     ++end;
   }
-  throw Error(
-      one_line(fmt::format("{}: no file has this name; give numbered files as a quoted pattern: '{}*{}'",
-                           name, name.substr(0, begin), name.substr(end))));
+  fail("{}: no file has this name; give numbered files as a quoted pattern: '{}*{}'", name,
+       name.substr(0, begin), name.substr(end));
 }
 
 /// Throws when an option of `reading` has no effect on a scene file or a recording.
@@ -118,8 +111,7 @@ void check_no_reading(const std::string& name, const MeshReading& reading, const
                        : reading.clips.fps                           ? "--fps"
                        : !reading.cache.empty()                      ? "--cache"
                                                                      : nullptr;
-  if (option != nullptr)
-    throw Error(one_line(fmt::format("{}: {} applies to mesh files only; {}", name, option, instead)));
+  if (option != nullptr) fail("{}: {} applies to mesh files only; {}", name, option, instead);
 }
 
 /// Throws when the conversion applies to none of the files.
@@ -129,10 +121,9 @@ void check_conversion(const std::vector<CoordinateFrame>& frames, const Coordina
                        [&](const CoordinateFrame& frame) { return can_convert(frame, part); });
   };
   if (conversion.up != UpAxis::file && !states({conversion.up, LengthUnit::file}))
-    throw Error(
-        "--up: no file states which axis points up; a scene file can rotate meshes, rotate_xyz_degrees");
+    fail("--up: no file states which axis points up; a scene file can rotate meshes, rotate_xyz_degrees");
   if (conversion.unit != LengthUnit::file && !states({UpAxis::file, conversion.unit}))
-    throw Error("--unit: no file states its unit; a scene file can scale meshes, scale");
+    fail("--unit: no file states its unit; a scene file can scale meshes, scale");
 }
 
 /// Plays the clip of an object.
@@ -169,11 +160,11 @@ Input read_meshes(const std::vector<std::string>& names, const MeshReading& read
   }
   if (is_given(reading.conversion)) check_conversion(frames, reading.conversion);
   if ((reading.clips.clip || reading.clips.fps) && !input.frames)
-    throw Error(fmt::format("{}: no file has an animation that moves its mesh; leave it out",
-                            reading.clips.clip ? "--clip" : "--fps"));
+    fail("{}: no file has an animation that moves its mesh; leave it out",
+         reading.clips.clip ? "--clip" : "--fps");
   if (!reading.cache.empty()) {
     if (input.objects.size() != 1 || input.frames)
-      throw Error("--cache: needs one mesh without a clip; use a scene file for more objects");
+      fail("--cache: needs one mesh without a clip; use a scene file for more objects");
     InputObject& object = input.objects.front();
     ComputedMotion motion = play_cache(reading.cache, object.mesh.positions.size(), false, {});
     input.frames = {reading.cache, motion.count};
@@ -204,8 +195,7 @@ std::string note_of_reader(const fs::path& path) {
   if (lower_case_extension(path) != ".fbx" || !is_read_by_assimp(path)) return {};
   return one_line(
       fmt::format("{}: read through Assimp, because this build is without ufbx: the pose of rotated, scaled, "
-                  "deformed and "
-                  "animated nodes can be wrong; build with ufbx, or export it as glTF",
+                  "deformed and animated nodes can be wrong; build with ufbx, or export it as glTF",
                   path.string()));
 }
 
@@ -273,8 +263,7 @@ bool is_recording(const std::string& name) {
 
 Input read_recording(const std::string& name) {
   const auto recording = std::make_shared<const Recording>(name);
-  if (recording->frame_count() == 0)
-    throw Error(fmt::format("{}: the recording has no frame; record some steps", name));
+  if (recording->frame_count() == 0) fail("{}: the recording has no frame; record some steps", name);
   const RecordingHeader& header = recording->header();
   Input input;
   input.files = {name};
@@ -296,16 +285,14 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end()) {
     if (names.size() > 1)
-      throw Error(fmt::format(
-          "{}: a scene file must be the only input; add the other meshes to it as objects", *scene));
+      fail("{}: a scene file must be the only input; add the other meshes to it as objects", *scene);
     check_no_reading(*scene, reading, "an [[object]] has keys for it");
     return read_scene_file(*scene, overrides);
   }
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording);
       recording != names.end()) {
     if (names.size() > 1)
-      throw Error(
-          fmt::format("{}: a recording must be the only input; leave out the other inputs", *recording));
+      fail("{}: a recording must be the only input; leave out the other inputs", *recording);
     check_no_reading(*recording, reading, "leave it out");
     return read_recording(*recording);
   }
@@ -315,16 +302,15 @@ Input read_objects(const std::vector<std::string>& names, const SceneOverrides& 
 Input read_sequence(const std::vector<std::string>& names, const CoordinateConversion& conversion) {
   const auto scene = std::find_if(names.begin(), names.end(), is_scene_file);
   if (scene != names.end())
-    throw Error(
-        fmt::format("{}: a scene file cannot be a frame of a sequence; leave out --sequence", *scene));
+    fail("{}: a scene file cannot be a frame of a sequence; leave out --sequence", *scene);
   if (const auto recording = std::find_if(names.begin(), names.end(), is_recording); recording != names.end())
-    throw Error(fmt::format("{}: a recording has its own frames; leave out --sequence", *recording));
+    fail("{}: a recording has its own frames; leave out --sequence", *recording);
   FrameSequence frames;
   frames.conversion = conversion;
   frames.files = expand_patterns(names);
   for (const fs::path& path : frames.files) {
     if (!fs::exists(path))
-      throw Error(fmt::format("{}: there is no such file; check the folder and the spelling", path.string()));
+      fail("{}: there is no such file; check the folder and the spelling", path.string());
   }
   Input input;
   input.files = frames.files;
@@ -336,21 +322,20 @@ Input read_sequence(const std::vector<std::string>& names, const CoordinateConve
 }
 
 std::optional<ComputedMotion> frames_of(const InputObject& object) {
-  if (!object.motion) return std::nullopt;
-  if (const auto* sequence = std::get_if<FrameSequence>(&*object.motion)) {
+  if (const auto* sequence = motion_of<FrameSequence>(object)) {
     const auto files = std::make_shared<const FrameFiles>(*sequence, object.mesh);
     return ComputedMotion{sequence->files.size(), [files](std::uint64_t frame, std::span<Vec3d> positions) {
                             files->read(frame, positions);
                           }};
   }
-  if (const auto* recorded = std::get_if<RecordedMotion>(&*object.motion)) {
+  if (const auto* recorded = motion_of<RecordedMotion>(object)) {
     return ComputedMotion{recorded->recording->frame_count(),
                           [motion = *recorded](std::uint64_t frame, std::span<Vec3d> positions) {
                             std::ranges::copy(motion.recording->positions(frame, motion.object),
                                               positions.begin());
                           }};
   }
-  const auto* computed = std::get_if<ComputedMotion>(&*object.motion);
+  const auto* computed = motion_of<ComputedMotion>(object);
   return computed ? std::optional(*computed) : std::nullopt;
 }
 

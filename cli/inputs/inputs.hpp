@@ -55,6 +55,12 @@ struct InputObject {
   std::optional<PartOfMesh> part{};
 };
 
+/// The motion of an object when it is of this kind, else null.
+template <class Kind>
+const Kind* motion_of(const InputObject& object) {
+  return object.motion ? std::get_if<Kind>(&*object.motion) : nullptr;
+}
+
 /// The input of a command: objects and their motion.
 struct Input {
   std::vector<InputObject> objects;

@@ -3,18 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <span>
-#include <string>
 #include <utility>
-#include <variant>
-#include <vector>
 
 #include "base/text.hpp"
-#include "supple/error.hpp"
 #include "supple/scene.hpp"
 #include "supple/topology.hpp"
 
@@ -78,10 +70,8 @@ Motion motion_of_part(const InputObject& whole, const std::shared_ptr<WholeFrame
     std::erase_if(springs->handles,
                   [](const MassSpringMotion::Handle& handle) { return handle.vertices.empty(); });
   } else {
-    throw Error(
-        fmt::format("{}: the frames of a recording have no parts; leave out the parts, or record again with "
-                    "parts",
-                    one_line(whole.mesh.name)));
+    fail("{}: the frames of a recording have no parts; leave out the parts, or record again with parts",
+         one_line(whole.mesh.name));
   }
   return motion;
 }
@@ -89,8 +79,7 @@ Motion motion_of_part(const InputObject& whole, const std::shared_ptr<WholeFrame
 void add_parts(InputObject whole, std::vector<InputObject>& objects) {
   std::vector<MeshPart> parts = split_into_parts(whole.mesh, whole.options.weld);
   std::shared_ptr<WholeFrames> frames;
-  if (whole.motion && (std::holds_alternative<FrameSequence>(*whole.motion) ||
-                       std::holds_alternative<ComputedMotion>(*whole.motion)))
+  if (motion_of<FrameSequence>(whole) || motion_of<ComputedMotion>(whole))
     frames = std::make_shared<WholeFrames>(whole);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     MeshPart& part = parts[i];

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,8 +11,8 @@
 
 namespace supple::cli {
 
-class HalfTurns;
 struct Input;
+struct InputObject;
 
 /// The energy of a body of masses and springs.
 struct BodyEnergy {
@@ -27,14 +26,14 @@ class MovingObjects {
  public:
   /// Throws `Error` as `build_simulation` does.
   explicit MovingObjects(const Input& input);
-  virtual ~MovingObjects();
+  virtual ~MovingObjects() = default;
   MovingObjects(const MovingObjects&) = delete;
   MovingObjects& operator=(const MovingObjects&) = delete;
 
   // As the functions of `Simulation`.
   virtual const DetectResult& detect(const DetectRequest& request) { return simulation_.detect(request); }
   virtual const DetectResult& step(const DetectRequest& request) { return simulation_.step(request); }
-  /// Call it before a step whose `turned` is read.
+  /// Call it before each step with continuous contacts.
   void remember_positions();
   virtual VerifyReport verify(const CallLimits& limits) {
     return supple::verify(simulation_.scene(), limits);
@@ -62,10 +61,17 @@ class MovingObjects {
 
  protected:
   /// Without objects.
-  explicit MovingObjects(const SimulationOptions& options);
+  explicit MovingObjects(const SimulationOptions& options) : simulation_(options) {}
+  /// Finds the objects of this process, whose inputs these are, that spin too fast. Call it when all are
+  /// added.
+  void find_spins(const std::vector<InputObject>& objects);
 
   Simulation simulation_;  ///< of the objects in this process
-  std::unique_ptr<HalfTurns> turns_;
+  /// Where they were at the last `remember_positions`.
+  std::vector<std::vector<Vec3d>> before_;
+
+ private:
+  std::vector<bool> spins_;  ///< by more than 120 degrees in each step, possibly by whole turns
 };
 
 }  // namespace supple::cli

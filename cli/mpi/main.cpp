@@ -6,12 +6,10 @@
 #include <cstdio>
 #include <exception>
 
-#include "base/exit_status.hpp"
 #include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "mpi/mpi_ranks.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -29,7 +27,7 @@ int run_command(int argument_count, char** arguments, MpiRanks& ranks) {
   ranks.together([&] {
     if (ranks.rank() != 0) parse();
     if (line.command != CommandLine::Command::detect && line.command != CommandLine::Command::simulate)
-      throw Error("only detect and simulate run on several ranks; start one process, without the launcher");
+      fail("only detect and simulate run on several ranks; start one process, without the launcher");
   });
   const int status = line.command == CommandLine::Command::detect ? run_detect(line.detect, ranks)
                                                                   : run_simulate(line.simulate, ranks);
@@ -46,10 +44,10 @@ int run_on_ranks(int argument_count, char** arguments) {
   std::exception_ptr thrown;
   try {
     if (ranks.size() != wanted)
-      throw Error(
-          fmt::format("the launcher started {} processes, but MPI has {}; use the launcher of the MPI "
-                      "that this program was built with",
-                      wanted, ranks.size()));
+      fail(
+          "the launcher started {} processes, but MPI has {}; use the launcher of the MPI "
+          "that this program was built with",
+          wanted, ranks.size());
     status = run_command(argument_count, arguments, ranks);
   } catch (const EndedByAll&) {
   } catch (const std::exception& error) {

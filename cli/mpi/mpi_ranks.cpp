@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <exception>
 
+#include "base/text.hpp"
 #include "inputs/inputs.hpp"
-#include "mpi/distributed_objects.hpp"
 #include "options/option_needs.hpp"
 #include "options/options.hpp"
 #include "supple/error.hpp"
@@ -64,13 +64,8 @@ void MpiRanks::check(const DetectionOptions& options, const Input& input) {
        "weld"},
   };
   for (const auto& [is_given, what] : refused) {
-    if (is_given)
-      throw Error(fmt::format("{}: several ranks do not have it; leave it out, or start one process", what));
+    if (is_given) fail("{}: several ranks do not have it; leave it out, or start one process", what);
   }
-}
-
-std::unique_ptr<MovingObjects> MpiRanks::move(Input& input, bool records) {
-  return std::make_unique<DistributedObjects>(*this, input, records);
 }
 
 /// The lowest rank for which it is true; the number of ranks when there is none.

@@ -80,15 +80,15 @@ void add_conversion(CLI::App& app, CoordinateConversion& conversion) {
   });
 }
 
-void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence,
-                       MeshReading& reading) {
-  app.add_option("MESH|SCENE.toml|RUN.h5", inputs,
+void add_input_options(CLI::App& app, InputOptions& options) {
+  MeshReading& reading = options.reading;
+  app.add_option("MESH|SCENE.toml|RUN.h5", options.inputs,
                  "Meshes, one per object; or one scene file; or one recording")
       ->required()
       ->type_name("");
   CLI::Option* const frames =
       app.add_flag(
-             "--sequence", sequence,
+             "--sequence", options.sequence,
              "The meshes are frames of one object, in the order of the command line; a quoted pattern such "
              "as 'frame_*.ply' is sorted by the numbers in the names")
           ->group("Input");

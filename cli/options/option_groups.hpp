@@ -22,7 +22,7 @@ void add_parts(CLI::App& app, bool& parts, const char* group);
 CLI::Option* add_frames(CLI::App& app, std::optional<std::uint64_t>& frames, const char* description);
 void add_conversion(CLI::App& app, CoordinateConversion& conversion);
 /// Adds the inputs: meshes, a scene file, a recording, or frames.
-void add_input_options(CLI::App& app, std::vector<std::string>& inputs, bool& sequence, MeshReading& reading);
+void add_input_options(CLI::App& app, InputOptions& options);
 /// Adds every option of the detection. A page has a layer instead of `--colliding-vertices`.
 void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& dependences,
                            bool of_page = false);

@@ -1,11 +1,7 @@
 #include "options/option_kinds.hpp"
 
-#include <fmt/ranges.h>
-
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -118,8 +114,7 @@ CLI::Option* add_root(CLI::App& app, const char* key, bool& root_is_border,
                       std::function<void(const RootCube&)> set) {
   constexpr const char* description =
       "Root region of the scene octree, a cube: its lowest corner and its edge, or the cube around the "
-      "border of "
-      "the scene (length; default: fitted to the objects)";
+      "border of the scene (length; default: fitted to the objects)";
   const std::string name = flag_of(key);
   const auto parse = [name, &root_is_border, set](const std::string& given) {
     root_is_border = given == "border";

@@ -4,24 +4,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <functional>
 #include <iterator>
-#include <limits>
-#include <optional>
-#include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
-#include "base/exit_status.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "options/help_footers.hpp"
 #include "options/option_groups.hpp"
 #include "options/option_kinds.hpp"
-#include "options/option_needs.hpp"
 #include "scene_file/scene_file.hpp"
 #include "session/settings.hpp"
 #include "supple/comparison.hpp"
@@ -46,7 +38,7 @@ void add_detect(CLI::App& program, DetectOptions& options, Dependences& dependen
   CLI::App* app =
       program.add_subcommand("detect", "Find every contact of static meshes, a sequence or a scene");
   app->footer(detect_footer);
-  add_input_options(*app, options.inputs, options.sequence, options.reading);
+  add_input_options(*app, options);
   add_frames(*app, options.frames,
              "Number of frames (default: all frames of a sequence, a recording or a scene with mesh files as "
              "frames; otherwise one frame, or two with continuous contacts); plays the animation of a file")
@@ -139,8 +131,7 @@ void add_info(CLI::App& program, InfoOptions& options, Dependences& dependences)
 CLI::App* add_query(CLI::App& program, QueryOptions& options, Dependences& dependences) {
   CLI::App* app = program.add_subcommand("query",
                                          "Find the nearest triangles of points, the points inside, the first "
-                                         "triangles on rays, or the distances "
-                                         "of objects");
+                                         "triangles on rays, or the distances of objects");
   app->footer(query_footer);
   add_conversion(*app, options.conversion);
   app->add_option_function<std::string>(

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "inputs/reading.hpp"
@@ -45,6 +44,13 @@ struct MethodOptions {
   bool parts = false;                              ///< each connected part is an object
 };
 
+/// What a command reads.
+struct InputOptions {
+  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
+  bool sequence = false;            ///< the inputs are frames of one object
+  MeshReading reading;
+};
+
 /// What ends a run before it is complete. The results so far are written and marked as truncated.
 struct RunLimits {
   std::uint64_t max_contacts = std::numeric_limits<std::uint64_t>::max();
@@ -75,10 +81,7 @@ struct DetectionOptions : MethodOptions {
 };
 
 /// Options of `supple detect`.
-struct DetectOptions : DetectionOptions {
-  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
-  bool sequence = false;            ///< the inputs are frames of one object
-  MeshReading reading;
+struct DetectOptions : DetectionOptions, InputOptions {
   std::optional<std::uint64_t> frames;
 };
 
@@ -93,10 +96,7 @@ struct SimulateOptions : DetectionOptions {
 };
 
 /// Options of `supple view`.
-struct ViewOptions : MethodOptions {
-  std::vector<std::string> inputs;  ///< meshes, patterns, or one scene file or recording
-  bool sequence = false;            ///< the inputs are frames of one object
-  MeshReading reading;
+struct ViewOptions : MethodOptions, InputOptions {
   std::optional<std::uint64_t> seed;
   std::optional<double> time_step;
   std::string address = "127.0.0.1";

@@ -1,14 +1,10 @@
 #include "options/option_groups.hpp"
 
-#include <CLI/CLI.hpp>
-#include <cstdint>
-#include <optional>
 #include <ranges>
-#include <string>
 #include <type_traits>
 
 #include "base/json_writer.hpp"
-#include "reports/report.hpp"
+#include "reports/reports.hpp"
 #include "session/fields/field_forms.hpp"
 #include "session/messages/described_json.hpp"
 #include "session/messages/sections.hpp"

@@ -2,9 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <charconv>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -104,8 +102,7 @@ CLI::Option* add_plot(CLI::App& app, RenderOptions& options) {
       app, "--plot", words, [&options](std::size_t place) { options.plot = names[place]; },
       "Draw a plot over the frames instead of the scene: pairs of objects, contacts, times of the stages, or "
       "a value of the pins in the view file. A simulation needs --frames. Of a recording, pins have the "
-      "values of "
-      "these frames");
+      "values of these frames");
 }
 
 void add_picture_options(CLI::App& app, RenderOptions& options, Dependences& dependences) {
@@ -186,7 +183,7 @@ void add_view(CLI::App& program, ViewOptions& options, Dependences& dependences)
                                          "Show moving objects in a browser with their contacts and the "
                                          "stages that find them; objects can be pulled");
   app->footer(view_footer);
-  add_input_options(*app, options.inputs, options.sequence, options.reading);
+  add_input_options(*app, options);
   add_frames(*app, options.reading.clips.frames, "Number of frames of the animation of a file")
       ->group("Input");
   add_scene_overrides(*app, options.seed, options.time_step);
@@ -249,7 +246,7 @@ void add_render(CLI::App& program, RenderOptions& options, Dependences& dependen
   CLI::App* app = program.add_subcommand(
       "render", "Draw frames of a scene or a recording as PNG or SVG files, without a window");
   app->footer(render_footer);
-  add_input_options(*app, options.inputs, options.sequence, options.reading);
+  add_input_options(*app, options);
   add_scene_overrides(*app, options.seed, options.time_step);
   add_detection_options(*app, options, dependences, true);
   add_fused_refit(*app, options, dependences);

@@ -10,17 +10,15 @@
 #include <span>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
-#include "base/exit_status.hpp"
 #include "base/files.hpp"
 #include "base/json_writer.hpp"
 #include "base/progress.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "supple/difference_descriptions.hpp"
-#include "supple/error.hpp"
 #include "supple/result.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/verify.hpp"
@@ -49,8 +47,6 @@ struct QueryFileResult {
   std::vector<std::uint64_t> false_negatives, false_positives;
   double seconds_per_query = 0;
   std::vector<QueryDifference> differences;  ///< only with --verify
-
-  std::uint64_t false_answers() const { return false_negatives.size() + false_positives.size(); }
 };
 
 struct QueryPaths {
@@ -64,14 +60,12 @@ std::vector<QueryPaths> paths_of(const CcdQueriesOptions& options) {
   const std::vector<fs::path> answers = expand_patterns(options.answers);
   for (const auto& inputs : {queries, answers}) check_output_names({{"--json", options.json}}, inputs);
   if (!answers.empty() && answers.size() != queries.size())
-    throw Error(fmt::format("--answers: {} for {}; give one for each, in the same order",
-                            counted(answers.size(), "file"),
-                            counted(queries.size(), "query file", "query files")));
+    fail("--answers: {} for {}; give one for each, in the same order", counted(answers.size(), "file"),
+         counted(queries.size(), "query file", "query files"));
   std::vector<QueryPaths> paths;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     if (!fs::exists(queries[i]))
-      throw Error(
-          fmt::format("{}: there is no such file; check the folder and the spelling", queries[i].string()));
+      fail("{}: there is no such file; check the folder and the spelling", queries[i].string());
     std::error_code is_no_file;
     const std::uintmax_t bytes = fs::file_size(queries[i], is_no_file);
     paths.push_back({queries[i], answers.empty() ? fs::path{} : answers[i], is_no_file ? 0 : bytes});
@@ -169,6 +163,7 @@ struct Totals {
     }
   }
 
+  std::uint64_t false_answers() const { return false_negatives + false_positives; }
   double seconds_per_query() const {
     return seconds / static_cast<double>(std::max<std::uint64_t>(queries, 1));
   }
@@ -201,14 +196,14 @@ void print_differences(const QueryFileResult& file) {
 }
 
 void print_comparison(const Totals& all) {
-  const std::uint64_t wrong = all.false_negatives + all.false_positives;
   if (all.queries == 0) {
     fmt::print("There are no queries.\n");
   } else if (all.compared == 0) {
     fmt::print("There are no answers to compare with.\n");
   } else {
-    fmt::print("{} compared with answers, {}\n", counted(all.compared, "query", "queries"),
-               wrong == 0 ? "none is false" : counted(wrong, "is false", "are false"));
+    fmt::print(
+        "{} compared with answers, {}\n", counted(all.compared, "query", "queries"),
+        all.false_answers() == 0 ? "none is false" : counted(all.false_answers(), "is false", "are false"));
     if (all.compared < all.queries)
       fmt::print("{} without an answer to compare with\n",
                  counted(all.queries - all.compared, "query", "queries"));
@@ -301,10 +296,8 @@ int run_ccd_queries(const CcdQueriesOptions& options) {
     json->close();
   }
   if (!options.quiet && options.json != "-") print_queries(results, options.verify, options.list_false);
-  const bool faultless = std::all_of(results.begin(), results.end(), [](const QueryFileResult& result) {
-    return result.false_answers() == 0 && result.differences.empty();
-  });
-  return faultless ? exit_done : exit_differences;
+  const Totals all(results);
+  return all.false_answers() + all.differences == 0 ? exit_done : exit_differences;
 }
 
 }  // namespace supple::cli

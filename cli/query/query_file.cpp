@@ -7,15 +7,18 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <fstream>
+#include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "query/rational.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -71,82 +74,75 @@ class RowReader {
  public:
   explicit RowReader(const fs::path& path) : path_(path), stream_(open_input(path)) {}
 
-  std::optional<Row> next();
+  std::optional<Row> next() {
+    std::string line;
+    do {
+      if (!std::getline(stream_, line)) {
+        if (stream_.bad()) fail("reading failed; is the disk all right?");
+        return std::nullopt;
+      }
+      ++line_number_;
+    } while (trimmed(line).empty());
+    const std::vector<std::string_view> columns = columns_of(line);
+    check_column_count(columns.size());
+    Row row;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t column = 2 * static_cast<std::size_t>(axis);
+      row.point[axis] = coordinate("xyz"[axis], columns[column], columns[column + 1]);
+    }
+    if (columns.size() > columns_of_point) row.answer = answer(columns.back());
+    return row;
+  }
+
   std::uint64_t line_number() const { return line_number_; }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(one_line(fmt::format("{}:{}: {}", path_.string(), line_number_, what)));
+  template <class... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> what, Args&&... args) const {
+    cli::fail("{}:{}: {}", path_.string(), line_number_, fmt::format(what, std::forward<Args>(args)...));
   }
 
  private:
-  Integer integer(std::string_view text) const;
-  double coordinate(char axis, std::string_view numerator, std::string_view denominator) const;
-  bool answer(std::string_view text) const;
-  void check_column_count(std::size_t count);
+  Integer integer(std::string_view text) const {
+    std::optional<Integer> value = parse_integer(text);
+    if (!value) fail("'{}' is not a whole number; a coordinate is numerator,denominator", shortened(text));
+    return *std::move(value);
+  }
+
+  double coordinate(char axis, std::string_view numerator, std::string_view denominator) const {
+    const auto fail_with = [&](const std::string& what) {
+      fail("{} = {}/{} {}", axis, shortened(numerator), shortened(denominator), what);
+    };
+    if (const std::optional<double> usual = exact_small_quotient(numerator, denominator)) return *usual;
+    const Integer top = integer(numerator), bottom = integer(denominator);
+    if (bottom == 0) fail_with("has the denominator 0; any other whole number is allowed");
+    // Boost's fractions have positive denominators.
+    const Rational value(bottom < 0 ? -top : top, abs(bottom));
+    const std::optional<double> exact = exact_double(value);
+    if (!exact) fail_with("is not the exact value of a double; " + advice_for(value));
+    return *exact;
+  }
+
+  bool answer(std::string_view text) const {
+    if (text != "0" && text != "1") fail("the answer '{}' must be 0 or 1", shortened(text));
+    return text == "1";
+  }
+
+  void check_column_count(std::size_t count) {
+    if (count != columns_of_point && count != columns_of_point + 1)
+      fail(
+          "has {} instead of 6 or 7: a row is numerator,denominator of x, y and z, and optionally "
+          "the answer, 0 or 1",
+          counted(count, "column"));
+    if (column_count_ == 0) column_count_ = count;
+    if (count != column_count_)
+      fail("has {} columns, but the first row has {}; all rows or no row must have the answer as column 7",
+           count, column_count_);
+  }
 
   const fs::path& path_;
   std::ifstream stream_;
   std::uint64_t line_number_ = 0;
   std::size_t column_count_ = 0;  ///< of the first row
 };
-
-std::optional<Row> RowReader::next() {
-  std::string line;
-  do {
-    if (!std::getline(stream_, line)) {
-      if (stream_.bad()) fail("reading failed; is the disk all right?");
-      return std::nullopt;
-    }
-    ++line_number_;
-  } while (trimmed(line).empty());
-  const std::vector<std::string_view> columns = columns_of(line);
-  check_column_count(columns.size());
-  Row row;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t column = 2 * static_cast<std::size_t>(axis);
-    row.point[axis] = coordinate("xyz"[axis], columns[column], columns[column + 1]);
-  }
-  if (columns.size() > columns_of_point) row.answer = answer(columns.back());
-  return row;
-}
-
-void RowReader::check_column_count(std::size_t count) {
-  if (count != columns_of_point && count != columns_of_point + 1)
-    fail(
-        fmt::format("has {} instead of 6 or 7: a row is numerator,denominator of x, y and z, and optionally "
-                    "the answer, 0 or 1",
-                    counted(count, "column")));
-  if (column_count_ == 0) column_count_ = count;
-  if (count != column_count_)
-    fail(fmt::format(
-        "has {} columns, but the first row has {}; all rows or no row must have the answer as column 7",
-        count, column_count_));
-}
-
-Integer RowReader::integer(std::string_view text) const {
-  std::optional<Integer> value = parse_integer(text);
-  if (!value)
-    fail(fmt::format("'{}' is not a whole number; a coordinate is numerator,denominator", shortened(text)));
-  return *std::move(value);
-}
-
-double RowReader::coordinate(char axis, std::string_view numerator, std::string_view denominator) const {
-  const auto fail_with = [&](const std::string& what) {
-    fail(fmt::format("{} = {}/{} {}", axis, shortened(numerator), shortened(denominator), what));
-  };
-  if (const std::optional<double> usual = exact_small_quotient(numerator, denominator)) return *usual;
-  const Integer top = integer(numerator), bottom = integer(denominator);
-  if (bottom == 0) fail_with("has the denominator 0; any other whole number is allowed");
-  // Boost's fractions have positive denominators.
-  const Rational value(bottom < 0 ? -top : top, abs(bottom));
-  const std::optional<double> exact = exact_double(value);
-  if (!exact) fail_with("is not the exact value of a double; " + advice_for(value));
-  return *exact;
-}
-
-bool RowReader::answer(std::string_view text) const {
-  if (text != "0" && text != "1") fail(fmt::format("the answer '{}' must be 0 or 1", shortened(text)));
-  return text == "1";
-}
 
 /// The rows of one query: v, f0, f1, f2 or a0, a1, b0, b1 at the start and then at the end.
 template <class Motion>
@@ -165,9 +161,9 @@ class QueryReader {
       if (i == 0) first = row;
       if (row->answer != first->answer)
         rows_.fail(
-            fmt::format("the answer is {:d}, but {:d} in the rows of this query before; all eight rows must "
-                        "have the same answer",
-                        *row->answer, *first->answer));
+            "the answer is {:d}, but {:d} in the rows of this query before; all eight rows must "
+            "have the same answer",
+            *row->answer, *first->answer);
       (i < 4 ? motion.start : motion.end)[i % 4] = row->point;
     }
     motions.push_back(motion);
@@ -177,10 +173,10 @@ class QueryReader {
 
  private:
   [[noreturn]] void fail_incomplete(std::size_t rows) const {
-    rows_.fail(fmt::format(
+    rows_.fail(
         "the file ends after {} of a query; a query has eight rows: four vertices at the start of the step, "
         "then the same vertices at its end",
-        counted(rows, "row")));
+        counted(rows, "row"));
   }
 
   RowReader rows_;
@@ -233,18 +229,47 @@ std::uint64_t line_of(const std::string& text, std::size_t offset) {
   return 1 + static_cast<std::uint64_t>(std::count(text.begin(), end, '\n'));
 }
 
+constexpr std::string_view separators = " \t\r,";
+
+/// Calls `add(numbers)` for each line with numbers.
+template <std::size_t count, class Add>
+void read_lines(const fs::path& path, const char* meaning, const Add& add) {
+  std::ifstream file = open_input(path);
+  std::string line;
+  for (std::size_t number = 1; std::getline(file, line); ++number) {
+    std::string_view rest = std::string_view(line).substr(0, line.find('#'));
+    std::array<double, count> values{};
+    std::size_t found = 0;
+    for (std::size_t begin; (begin = rest.find_first_not_of(separators)) != std::string_view::npos; ++found) {
+      rest.remove_prefix(begin);
+      const std::string_view word = rest.substr(0, rest.find_first_of(separators));
+      rest.remove_prefix(word.size());
+      double value = 0;
+      const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+      if (error != std::errc() || end != digits.data() + digits.size())
+        fail("{}: line {}: \"{}\" is not a number that a double can hold; a line has {}", path.string(),
+             number, word.substr(0, 40), meaning);
+      if (found < count) values[found] = value;
+    }
+    if (found == 0) continue;
+    if (found != count) fail("{}: line {}: {} numbers; a line has {}", path.string(), number, found, meaning);
+    add(values);
+  }
+  if (file.bad()) fail("{}: the file cannot be read to its end", path.string());
+}
+
 }  // namespace
 
 QueryKind kind_of(const fs::path& path) {
   const std::optional<QueryKind> folder = kind_of_folder(path), stem = kind_of_stem(path);
   if (folder && stem && *folder != *stem)
-    throw Error(fmt::format("{}: the folder and the name give different kinds of queries; give --kind",
-                            path.string()));
+    fail("{}: the folder and the name give different kinds of queries; give --kind", path.string());
   if (!folder && !stem)
-    throw Error(
-        fmt::format("{}: cannot tell whether these are vertex-face or edge-edge queries; give --kind, or a "
-                    "folder named after the kind, or a name that ends in vf or ee",
-                    path.string()));
+    fail(
+        "{}: cannot tell whether these are vertex-face or edge-edge queries; give --kind, or a "
+        "folder named after the kind, or a name that ends in vf or ee",
+        path.string());
   return folder ? *folder : *stem;
 }
 
@@ -255,25 +280,38 @@ QueryFile read_query_file(const fs::path& path, QueryKind kind) {
 
 void read_answers(const fs::path& path, QueryFile& file) {
   if (file.answers && file.size() > 0)
-    throw Error(fmt::format("{}: already has a column of answers; leave out --answers {}", file.path.string(),
-                            path.string()));
+    fail("{}: already has a column of answers; leave out --answers {}", file.path.string(), path.string());
   const std::string text = read_text(path);
   AnswerHandler handler;
   rapidjson::MemoryStream input(text.data(), text.size());
   const rapidjson::ParseResult parsed =
       rapidjson::Reader().Parse<rapidjson::kParseIterativeFlag>(input, handler);
-  const auto fail = [&](const std::string& what) {
-    throw Error(one_line(fmt::format("{}:{}: {}", path.string(), line_of(text, parsed.Offset()), what)));
+  const auto fail_there = [&](const std::string& what) {
+    fail("{}:{}: {}", path.string(), line_of(text, parsed.Offset()), what);
   };
   if (parsed.Code() == rapidjson::kParseErrorTermination)
-    fail(handler.in_list ? fmt::format("entry {} must be true or false", handler.answers.size())
-                         : "must be a list of true and false, one per query");
-  if (!parsed) fail(fmt::format("not valid JSON: {}", rapidjson::GetParseError_En(parsed.Code())));
+    fail_there(handler.in_list ? fmt::format("entry {} must be true or false", handler.answers.size())
+                               : "must be a list of true and false, one per query");
+  if (!parsed) fail_there(fmt::format("not valid JSON: {}", rapidjson::GetParseError_En(parsed.Code())));
   file.answers = std::move(handler.answers);
   if (file.answers->size() != file.size())
-    throw Error(fmt::format("{}: has {}, but {} has {}; it needs one per query", path.string(),
-                            counted(file.answers->size(), "answer"), file.path.string(),
-                            counted(file.size(), "query", "queries")));
+    fail("{}: has {}, but {} has {}; it needs one per query", path.string(),
+         counted(file.answers->size(), "answer"), file.path.string(),
+         counted(file.size(), "query", "queries"));
+}
+
+std::vector<Vec3d> read_points(const fs::path& path) {
+  std::vector<Vec3d> points;
+  read_lines<3>(path, "three: x, y and z", [&](const auto& v) { points.push_back({v[0], v[1], v[2]}); });
+  return points;
+}
+
+std::vector<Ray> read_rays(const fs::path& path) {
+  std::vector<Ray> rays;
+  read_lines<6>(path, "six: x, y and z of the origin, then of the direction", [&](const auto& v) {
+    rays.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+  });
+  return rays;
 }
 
 }  // namespace supple::cli

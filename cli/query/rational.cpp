@@ -4,13 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <system_error>
 
 namespace supple::cli {
-
-namespace mp = boost::multiprecision;
 
 std::optional<Integer> parse_integer(std::string_view text) {
   const bool negative = text.starts_with('-');
@@ -24,19 +21,8 @@ std::optional<Integer> parse_integer(std::string_view text) {
 }
 
 std::optional<double> exact_double(const Rational& value) {
-  using Double = std::numeric_limits<double>;
-  const Integer numerator = mp::numerator(value), denominator = mp::denominator(value);
-  if (numerator == 0) return 0.0;
-  const Integer size = mp::abs(numerator);
-  const unsigned power = mp::msb(denominator);
-  if (mp::lsb(denominator) != power) return std::nullopt;
-  const unsigned lowest = mp::lsb(size), highest = mp::msb(size);
-  if (highest - lowest >= static_cast<unsigned>(Double::digits)) return std::nullopt;
-  const long exponent = static_cast<long>(lowest) - static_cast<long>(power);
-  const long top = static_cast<long>(highest) - static_cast<long>(power);
-  if (top >= Double::max_exponent || exponent < Double::min_exponent - Double::digits) return std::nullopt;
-  const double digits = static_cast<Integer>(size >> lowest).convert_to<double>();
-  return std::ldexp(numerator < 0 ? -digits : digits, static_cast<int>(exponent));
+  const auto nearest = value.convert_to<double>();
+  return std::isfinite(nearest) && Rational(nearest) == value ? std::optional(nearest) : std::nullopt;
 }
 
 std::optional<double> exact_small_quotient(std::string_view numerator, std::string_view denominator) {

@@ -1,7 +1,6 @@
 #include "render/browser.hpp"
 
 #include <fcntl.h>
-#include <fmt/core.h>
 #include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -20,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "supple/error.hpp"
+#include "base/text.hpp"
 #include "supple/utf8.hpp"
 
 extern char** environ;
@@ -49,8 +48,7 @@ bool is_program(const fs::path& path) {
 }
 
 std::string checked(const std::string& path, const char* source) {
-  if (!is_program(path))
-    throw Error(fmt::format("{}: {}: it is not a program; give the path of a Chromium", source, path));
+  if (!is_program(path)) fail("{}: {}: it is not a program; give the path of a Chromium", source, path);
   return path;
 }
 
@@ -58,8 +56,8 @@ fs::path make_profile() {
   std::error_code fault;
   std::string name = fs::temp_directory_path(fault) / "supple-browser-XXXXXX";
   if (fault || mkdtemp(name.data()) == nullptr)
-    throw Error(fmt::format("{}: cannot make a folder for the browser: {}; set TMPDIR to a writable folder",
-                            name, std::strerror(fault ? fault.value() : errno)));
+    fail("{}: cannot make a folder for the browser: {}; set TMPDIR to a writable folder", name,
+         std::strerror(fault ? fault.value() : errno));
   return name;
 }
 
@@ -100,7 +98,7 @@ std::string find_browser(const std::string& given) {
     for (std::string folder; std::getline(folders, folder, ':');)
       if (is_program(fs::path(folder) / name)) return fs::path(folder) / name;
   }
-  throw Error(
+  fail(
       "there is no Chromium, which draws the pictures; install it (Debian: apt-get install "
       "chromium-headless-shell, or chromium), or give its path by --browser or SUPPLE_CHROMIUM");
 }
@@ -108,7 +106,7 @@ std::string find_browser(const std::string& given) {
 Browser::Browser(const std::string& program, bool uses_graphics_card) : profile_(make_profile()) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw Error(fmt::format("cannot make a socket for the browser: {}", std::strerror(errno)));
+    fail("cannot make a socket for the browser: {}", std::strerror(errno));
   control_ = ends[0];
   std::vector<std::string> arguments = arguments_of(program, profile_, uses_graphics_card);
   std::vector<char*> pointers;
@@ -137,7 +135,7 @@ Browser::Browser(const std::string& program, bool uses_graphics_card) : profile_
   close(control_);
   std::error_code ignored;
   fs::remove_all(profile_, ignored);
-  throw Error(fmt::format("{}: cannot be started: {}", program, std::strerror(fault)));
+  fail("{}: cannot be started: {}", program, std::strerror(fault));
 }
 
 Browser::~Browser() {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <regex>
 
-#include "supple/error.hpp"
+#include "base/text.hpp"
 
 namespace supple::cli {
 
@@ -13,10 +13,10 @@ PictureNames::PictureNames(const std::string& pattern) {
   static const std::regex form("((?:[^%]|%%)*)(?:(%(?:0([0-9]?))?d)((?:[^%]|%%)*))?"), percent("%%");
   std::smatch parts;
   if (!std::regex_match(pattern, parts, form))
-    throw Error(fmt::format(
+    fail(
         "--output: {}: write the place of the number once, as %d, or as %04d for four digits, and %% for a "
         "percent sign",
-        pattern));
+        pattern);
   before_ = std::regex_replace(parts[1].str(), percent, "%");
   after_ = std::regex_replace(parts[4].str(), percent, "%");
   has_number_ = parts[2].matched;

@@ -11,22 +11,16 @@
 #include <string_view>
 #include <utility>
 
-#include "base/exit_status.hpp"
-#include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "base/progress.hpp"
 #include "base/run_program.hpp"
 #include "base/text.hpp"
-#include "commands/build_simulation.hpp"
-#include "export/embedded.hpp"
 #include "export/page_file.hpp"
-#include "inputs/inputs.hpp"
 #include "render/browser.hpp"
 #include "render/picture_names.hpp"
 #include "server/server.hpp"
 #include "session/messages/json_text.hpp"
 #include "session/messages/json_value.hpp"
-#include "session/messages/mesh_warnings.hpp"
 #include "supple/error.hpp"
 #include "view/build_scene_view.hpp"
 #include "view_file/view_file.hpp"
@@ -49,11 +43,11 @@ Pixels size_in_pixels(const RenderOptions& options) {
   const auto pixels = [&](double length) { return std::round(scale * length); };
   const double width = pixels(options.size.width), height = pixels(options.size.height);
   if (!(std::min(width, height) >= 1) || std::max(width, height) > most_pixels)
-    throw Error(
-        fmt::format("--size: the pictures would have {:.0f} x {:.0f} pixels; choose a size from 1 to {} "
-                    "pixels a side, or "
-                    "another --dpi",
-                    width, height, most_pixels));
+    fail(
+        "--size: the pictures would have {:.0f} x {:.0f} pixels; choose a size from 1 to {} "
+        "pixels a side, or "
+        "another --dpi",
+        width, height, most_pixels);
   return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
@@ -103,7 +97,7 @@ PageResult parse_result(std::span<const std::byte> bytes) {
   std::optional<viewer::JsonValue> head;
   if (length > 0 && length <= bytes.size() - sizeof length)
     head = viewer::parse_json(text.substr(sizeof length, length), fault);
-  if (!head) throw Error("the page sent a result that cannot be read; this is a fault of supple");
+  if (!head) fail("the page sent a result that cannot be read; this is a fault of supple");
   return {std::move(*head), text.substr(sizeof length + length)};
 }
 
@@ -192,18 +186,18 @@ class Run {
 void check_frames(const RenderOptions& options, const viewer::SceneView& show, const PictureNames& names) {
   const bool is_plot = !options.plot.empty();
   if (is_plot && !show.frames && !options.frames)
-    throw Error("--plot: a simulation has no end; choose its steps, such as --frames 0-100");
+    fail("--plot: a simulation has no end; choose its steps, such as --frames 0-100");
   if (is_plot && names.has_number())
-    throw Error(fmt::format("--output: {}: a plot is one picture; write a name without %", options.output));
+    fail("--output: {}: a plot is one picture; write a name without %", options.output);
   if (!options.frames) return;
   if (!is_plot && !names.has_number() && options.frames->count() > 1)
-    throw Error(
-        fmt::format("--output: {}: the pictures of several frames need different names; write %04d "
-                    "where the number of the frame shall be",
-                    options.output));
+    fail(
+        "--output: {}: the pictures of several frames need different names; write %04d "
+        "where the number of the frame shall be",
+        options.output);
   if (show.frames && options.frames->last >= show.frames->count())
-    throw Error(fmt::format("--frames: {} is no frame of {}, which has the frames 0 to {}",
-                            options.frames->last, options.inputs.front(), show.frames->count() - 1));
+    fail("--frames: {} is no frame of {}, which has the frames 0 to {}", options.frames->last,
+         options.inputs.front(), show.frames->count() - 1);
 }
 
 }  // namespace
@@ -213,18 +207,10 @@ int run_render(const RenderOptions& options) {
   const std::string program = find_browser(options.browser);
   const PictureNames names(options.output);
   const Pixels size = size_in_pixels(options);
-  std::string page(viewer::embedded_page());
-  if (!options.view_file.empty())
-    page = viewer::page_with_json(page, "supple-view", viewer::read_view(options.view_file));
-  page = viewer::page_with_json(page, "supple-job", job_of(options, size));
-  Input input = read_view_input(options);
-  check_output_names({{"--output", names.of(0)}, {"--view", options.view_file}}, input.files);
-  apply(options, input);
-  print_notes(input);
-  viewer::SceneView show = build_scene_view(input, options);
+  const std::string page = viewer::page_with_json(page_of(options), "supple-job", job_of(options, size));
+  viewer::SceneView show = read_scene_view(options, {"--output", names.of(0)});
   check_frames(options, show, names);
-  for (const std::string& warning : viewer::warnings_of_meshes(show))
-    fmt::print(stderr, "supple: warning: {}\n", one_line(warning));
+  print_warnings(show);
   warn_of_missing_threads(options.scene.threads);
   Run run(options, names, size);
   return run.go(std::move(show), page, program);

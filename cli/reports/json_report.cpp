@@ -1,13 +1,7 @@
-#include "reports/report.hpp"
+#include "reports/reports.hpp"
 
-#include <fmt/core.h>
-
-#include <array>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
-#include <vector>
 
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
@@ -15,7 +9,6 @@
 #include "session/messages/described_json.hpp"
 #include "supple/difference_descriptions.hpp"
 #include "supple/option_descriptions.hpp"
-#include "supple/verify.hpp"
 
 namespace supple::cli {
 namespace {
@@ -82,118 +75,135 @@ void write_verify(JsonWriter& json, const char* name, std::pair<const char*, std
   });
 }
 
+/// Writes the result of `supple detect` as docs/json.md describes, frame by frame.
+class JsonReport : public Report {
+ public:
+  JsonReport(const std::string& file_name, const Input& input, const MovingObjects& objects,
+             const JsonContent& content)
+      : json_(file_name), input_(input), objects_(objects), content_(content) {
+    if (content_.stats) write_options(json_, input_.simulation.scene);
+    std::uint32_t number = 0;
+    json_.objects("objects", input.objects, [&](const InputObject& object) {
+      json_.member("name", input.name(ObjectId{number++}));
+      json_.member("vertices", std::uint64_t{object.mesh.positions.size()});
+      json_.member("triangles", std::uint64_t{object.mesh.triangles.size()});
+      if (content_.stats) write_options(json_, object.options);
+      if (content_.faces)
+        json_.list("faces", object.mesh.triangles, [&](const Triangle& triangle) {
+          json_.array(triangle, [&](std::uint32_t vertex) { json_.value(vertex); });
+        });
+      if (!object.part) return;
+      json_.object("part", [&] {
+        json_.member("of", object.part->mesh);
+        json_.list("vertices", object.part->vertices);
+        json_.list("triangles", object.part->triangles);
+      });
+    });
+    json_.key("frames");
+    json_.begin_array();
+  }
+
+  void add(const Frame& frame) override {
+    const DetectResult& result = frame.result;
+    const SceneOptions& options = input_.simulation.scene;
+    json_.begin_object();
+    json_.member("frame", frame.number);
+    if (frame.simulated) json_.member("time", frame.simulated->time);
+    add_files(frame.number);
+    json_.member("truncated", result.truncated);
+    is_truncated_ = is_truncated_ || result.truncated;
+    write_untested(json_, frame);
+    write_object_pairs(json_, "object_pairs", result.object_pairs);
+    const bool continuous = contains(options.contacts, ContactKinds::continuous);
+    const bool both = continuous && contains(options.contacts, ContactKinds::intersection);
+    const bool at_rest =
+        options.contacts == ContactKinds::none || contains(options.contacts, ContactKinds::intersection);
+    const bool proximity = contains(options.contacts, ContactKinds::proximity);
+    if (continuous) {
+      write_continuous_groups(json_, result, !options.impact.exact);
+      if (content_.contact_details)
+        write_records(json_, both ? "continuous_contacts" : "contacts", result.continuous_contacts);
+    }
+    if (at_rest) write_intersections(json_, result, {content_.contact_details, options.contact_points});
+    if (proximity) {
+      write_proximity_groups(json_, result, options.proximity_listing);
+      if (content_.contact_details) write_records(json_, "proximity_pairs", result.proximity_pairs);
+    }
+    const bool penetration = contains(options.contacts, ContactKinds::penetration);
+    if (penetration) write_penetration(json_, result, content_.contact_details);
+    if (options.manifolds) write_manifolds(json_, result);
+    if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
+    if (content_.node_pairs) write_node_pairs(json_, objects_.scene(), *content_.node_pairs);
+    json_.object("events", [&] {
+      write_events(json_, "volumes", result.volume_events);
+      if (options.comparison.colliding_vertices)
+        write_events(json_, "narrow_phase", result.narrow_phase_events);
+      write_events(json_, "contacts", result.contact_events);
+      if (proximity) write_events(json_, "proximity", result.proximity_events);
+      if (penetration) write_events(json_, "penetration", result.penetration_events);
+    });
+    write_records(json_, "non_finite", result.non_finite_vertices);
+    if (frame.verify) {
+      const VerifyReport& report = *frame.verify;
+      if (continuous)
+        write_verify(json_, both ? "continuous_verify" : "verify",
+                     {"element_pairs_checked", report.element_pairs_checked},
+                     {"touching_element_pairs", report.touching_element_pairs},
+                     report.continuous_differences);
+      if (contains(options.contacts, ContactKinds::intersection))
+        write_verify(json_, "verify", {"triangle_pairs_checked", report.triangle_pairs_checked},
+                     {"intersecting_pairs", report.intersecting_pairs}, report.differences);
+      if (proximity)
+        write_verify(json_, "proximity_verify", {"element_pairs_checked", report.proximity_pairs_checked},
+                     {"near_pairs", report.near_pairs}, report.proximity_differences);
+      if (penetration)
+        write_verify(json_, "penetration_verify",
+                     {"vertex_triangle_pairs_checked", report.vertex_triangle_pairs_checked},
+                     {"inside_vertices", report.inside_vertices}, report.penetration_differences);
+    }
+    if (content_.stats) write_stats(json_, frame);
+    json_.end_object();
+    json_.flush();
+  }
+
+  void finish(bool was_ended) override {
+    json_.end_array();
+    json_.member("truncated", was_ended || is_truncated_);
+    json_.close();
+  }
+
+ private:
+  JsonWriter json_;
+
+  /// Writes the files of a frame.
+  void add_files(std::uint64_t frame) {
+    bool is_first = true;
+    for (std::size_t i = 0; i < input_.objects.size(); ++i) {
+      const auto* const sequence = motion_of<FrameSequence>(input_.objects[i]);
+      if (!sequence) continue;
+      if (std::exchange(is_first, false)) {
+        json_.key("files");
+        json_.begin_array();
+      }
+      json_.begin_object();
+      json_.member("object", std::uint64_t{i});
+      json_.member("file", sequence->file_at(frame).string());
+      json_.end_object();
+    }
+    if (!is_first) json_.end_array();
+  }
+
+  const Input& input_;
+  const MovingObjects& objects_;
+  JsonContent content_;
+  bool is_truncated_ = false;
+};
+
 }  // namespace
 
-JsonReport::JsonReport(const std::string& file_name, const Input& input, const MovingObjects& objects,
-                       const JsonContent& content)
-    : json_(file_name), input_(input), objects_(objects), content_(content) {
-  if (content_.stats) write_options(json_, input_.simulation.scene);
-  std::uint32_t number = 0;
-  json_.objects("objects", input.objects, [&](const InputObject& object) {
-    json_.member("name", input.name(ObjectId{number++}));
-    json_.member("vertices", std::uint64_t{object.mesh.positions.size()});
-    json_.member("triangles", std::uint64_t{object.mesh.triangles.size()});
-    if (content_.stats) write_options(json_, object.options);
-    if (content_.faces)
-      json_.list("faces", object.mesh.triangles, [&](const Triangle& triangle) {
-        json_.array(triangle, [&](std::uint32_t vertex) { json_.value(vertex); });
-      });
-    if (!object.part) return;
-    json_.object("part", [&] {
-      json_.member("of", object.part->mesh);
-      json_.list("vertices", object.part->vertices);
-      json_.list("triangles", object.part->triangles);
-    });
-  });
-  json_.key("frames");
-  json_.begin_array();
-}
-
-/// Writes the files of a frame.
-void JsonReport::add_files(std::uint64_t frame) {
-  bool is_first = true;
-  for (std::size_t i = 0; i < input_.objects.size(); ++i) {
-    const auto& motion = input_.objects[i].motion;
-    const auto* const sequence = motion ? std::get_if<FrameSequence>(&*motion) : nullptr;
-    if (!sequence) continue;
-    if (std::exchange(is_first, false)) {
-      json_.key("files");
-      json_.begin_array();
-    }
-    json_.begin_object();
-    json_.member("object", std::uint64_t{i});
-    json_.member("file", sequence->file_at(frame).string());
-    json_.end_object();
-  }
-  if (!is_first) json_.end_array();
-}
-
-void JsonReport::add(const Frame& frame) {
-  const DetectResult& result = frame.result;
-  const SceneOptions& options = input_.simulation.scene;
-  json_.begin_object();
-  json_.member("frame", frame.number);
-  if (frame.simulated) json_.member("time", frame.simulated->time);
-  add_files(frame.number);
-  json_.member("truncated", result.truncated);
-  is_truncated_ = is_truncated_ || result.truncated;
-  write_untested(json_, frame);
-  write_object_pairs(json_, "object_pairs", result.object_pairs);
-  const bool continuous = contains(options.contacts, ContactKinds::continuous);
-  const bool both = continuous && contains(options.contacts, ContactKinds::intersection);
-  const bool at_rest =
-      options.contacts == ContactKinds::none || contains(options.contacts, ContactKinds::intersection);
-  const bool proximity = contains(options.contacts, ContactKinds::proximity);
-  if (continuous) {
-    write_continuous_groups(json_, result, !options.impact.exact);
-    if (content_.contact_details)
-      write_records(json_, both ? "continuous_contacts" : "contacts", result.continuous_contacts);
-  }
-  if (at_rest) write_intersections(json_, result, {content_.contact_details, options.contact_points});
-  if (proximity) {
-    write_proximity_groups(json_, result, options.proximity_listing);
-    if (content_.contact_details) write_records(json_, "proximity_pairs", result.proximity_pairs);
-  }
-  const bool penetration = contains(options.contacts, ContactKinds::penetration);
-  if (penetration) write_penetration(json_, result, content_.contact_details);
-  if (options.manifolds) write_manifolds(json_, result);
-  if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
-  if (content_.node_pairs) write_node_pairs(json_, objects_.scene(), *content_.node_pairs);
-  json_.object("events", [&] {
-    write_events(json_, "volumes", result.volume_events);
-    if (options.comparison.colliding_vertices)
-      write_events(json_, "narrow_phase", result.narrow_phase_events);
-    write_events(json_, "contacts", result.contact_events);
-    if (proximity) write_events(json_, "proximity", result.proximity_events);
-    if (penetration) write_events(json_, "penetration", result.penetration_events);
-  });
-  write_records(json_, "non_finite", result.non_finite_vertices);
-  if (frame.verify) {
-    const VerifyReport& report = *frame.verify;
-    if (continuous)
-      write_verify(json_, both ? "continuous_verify" : "verify",
-                   {"element_pairs_checked", report.element_pairs_checked},
-                   {"touching_element_pairs", report.touching_element_pairs}, report.continuous_differences);
-    if (contains(options.contacts, ContactKinds::intersection))
-      write_verify(json_, "verify", {"triangle_pairs_checked", report.triangle_pairs_checked},
-                   {"intersecting_pairs", report.intersecting_pairs}, report.differences);
-    if (proximity)
-      write_verify(json_, "proximity_verify", {"element_pairs_checked", report.proximity_pairs_checked},
-                   {"near_pairs", report.near_pairs}, report.proximity_differences);
-    if (penetration)
-      write_verify(json_, "penetration_verify",
-                   {"vertex_triangle_pairs_checked", report.vertex_triangle_pairs_checked},
-                   {"inside_vertices", report.inside_vertices}, report.penetration_differences);
-  }
-  if (content_.stats) write_stats(json_, frame);
-  json_.end_object();
-  json_.flush();
-}
-
-void JsonReport::finish(bool was_ended) {
-  json_.end_array();
-  json_.member("truncated", was_ended || is_truncated_);
-  json_.close();
+std::unique_ptr<Report> make_json_report(const std::string& file_name, const Input& input,
+                                         const MovingObjects& objects, const JsonContent& content) {
+  return std::make_unique<JsonReport>(file_name, input, objects, content);
 }
 
 }  // namespace supple::cli

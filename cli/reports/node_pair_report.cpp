@@ -1,4 +1,4 @@
-#include "reports/report.hpp"
+#include "reports/reports.hpp"
 
 #include <fmt/core.h>
 
@@ -6,12 +6,9 @@
 #include <array>
 #include <ranges>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
-#include "supple/error.hpp"
 #include "supple/inspection.hpp"
 
 namespace supple::cli {
@@ -43,11 +40,11 @@ std::string names_of(const NodePairList& list, std::span<const NodePairList::Pai
 void check_node_pairs(const Input& input, ObjectNumbers objects) {
   for (const std::uint32_t object : objects) {
     if (object >= input.objects.size())
-      throw Error(fmt::format("--node-pairs: there is no object {}; there are {}, numbered from 0", object,
-                              input.objects.size()));
+      fail("--node-pairs: there is no object {}; there are {}, numbered from 0", object,
+           input.objects.size());
   }
   if (objects[0] == objects[1] && !input.objects[objects[0]].options.self_collision)
-    throw Error(fmt::format("--node-pairs: object {} is not tested against itself; add --self", objects[0]));
+    fail("--node-pairs: object {} is not tested against itself; add --self", objects[0]);
 }
 
 void print_node_pairs(const Scene& scene, ObjectNumbers objects, std::uint64_t frame) {

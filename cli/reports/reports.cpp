@@ -1,19 +1,17 @@
 #include "reports/reports.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <array>
-#include <cstdint>
 #include <utility>
 
-#include "base/exit_status.hpp"
+#include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
-#include "reports/report.hpp"
 #include "supple/result_descriptions.hpp"
-#include "supple/verify.hpp"
 
 namespace supple::cli {
 namespace {
@@ -38,9 +36,7 @@ constexpr std::array outcomes_of_vertices{
 std::string describe(const Input& input, const auto& d, std::array<FeatureKind, 2> kinds,
                      const auto& outcomes) {
   const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
-    const std::string numbers =
-        kind == FeatureKind::edge ? fmt::format("{} {}", ids[0], ids[1]) : fmt::format("{}", ids[0]);
-    return fmt::format("{} {} of {}", word_of(kind), numbers, one_line(input.name(object)));
+    return fmt::format("{} of {}", element_name(kind, ids), one_line(input.name(object)));
   };
   return fmt::format("{} and {} {}", named(kinds[0], d.element_a, d.object_a),
                      named(kinds[1], d.element_b, d.object_b), outcomes[static_cast<std::size_t>(d.fault)]);
@@ -81,15 +77,16 @@ Reports::Reports(const DetectionOptions& options, const Input& input, const Movi
       solid_parts_(describe_solid_parts(input)),
       tested_(input, input.simulation.scene.contacts) {
   if (options.json_content.node_pairs) check_node_pairs(input, *options.json_content.node_pairs);
-  if (!options.json.empty()) json_.emplace(options.json, input, objects, options.json_content);
-  if (!options.csv.empty()) csv_.emplace(options.csv, options.scene, options.json_content.contact_details);
+  if (!options.json.empty())
+    files_.push_back(make_json_report(options.json, input, objects, options.json_content));
+  if (!options.csv.empty())
+    files_.push_back(make_csv_report(options.csv, options.scene, options.json_content.contact_details));
   if (!options.quiet && options.json != "-" && options.csv != "-")
-    text_.emplace(std::move(noun), input, objects);
+    text_ = make_text_report(std::move(noun), input, objects, tested_);
 }
 
 void Reports::add(const Frame& frame) {
-  if (json_) json_->add(frame);
-  if (csv_) csv_->add(frame);
+  for (const auto& file : files_) file->add(frame);
   if (text_) text_->add(frame);
   tested_.add(frame);
   last_frame_ = frame.number;
@@ -102,8 +99,7 @@ void Reports::add(const Frame& frame) {
 
 void Reports::finish(bool was_ended) {
   was_ended_ = was_ended;
-  if (json_) json_->finish(was_ended);
-  if (csv_) csv_->finish(was_ended || truncated_frames_ > 0);
+  for (const auto& file : files_) file->finish(was_ended);
   if (truncated_frames_ > 0)
     fmt::print(stderr, "supple: {} more contacts than --max-contacts {}; the results are truncated\n",
                truncated_frames_ == 1 ? "a frame has" : counted(truncated_frames_, "frame") + " have",
@@ -112,7 +108,7 @@ void Reports::finish(bool was_ended) {
     if (!options_.quiet && !is_failing()) report_faults("warning");
     return;
   }
-  text_->print(tested_);
+  text_->finish(was_ended);
   if (!solid_parts_.empty()) fmt::print("\n{}\n", solid_parts_);
   if (const auto& objects = options_.json_content.node_pairs; objects && !was_ended)
     print_node_pairs(objects_.scene(), *objects, last_frame_);

@@ -1,10 +1,8 @@
 #include "reports/result_json.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <ranges>
-#include <string>
 #include <vector>
 
 namespace supple::cli {
@@ -87,13 +85,8 @@ void write_uncertain_rows(JsonWriter& json, std::span<const RowsOfKind<Continuou
 void write_penetration_groups(JsonWriter& json, const DetectResult& result) {
   json.objects("penetration", result.penetration_groups, [&](const PenetrationGroup& group) {
     write_objects(json, group.a, group.b);
-    json.list("vertices", result.penetrations_of(group), [&](const Penetration& p) {
-      json.begin_array();
-      json.value(p.vertex);
-      json.value(p.triangle);
-      json.value(p.depth);
-      json.end_array();
-    });
+    json.list("vertices", result.penetrations_of(group),
+              [&](const Penetration& p) { json.row(p.vertex, p.triangle, p.depth); });
     json.list("on_surface", result.vertices_on_surface_of(group));
   });
 }
@@ -137,33 +130,16 @@ void write_element(JsonWriter& json, const std::array<std::uint32_t, 2>& element
 
 void write_members(JsonWriter& json, const RecordInfo& record, const std::byte* row, bool only_exact) {
   for (const FieldInfo& field : record.fields) {
-    const Role& role = field.role;
-    if ((only_exact && role.is_rounded) || is_of_range(role)) continue;
+    if ((only_exact && field.role.is_rounded) || is_of_range(field.role)) continue;
     json.key(short_key(field.name));
-    const auto number = [&](std::size_t i) { return number_of(field, row, i); };
-    if (field.kind == FieldInfo::Kind::object) {
-      json.value(number(0));
-    } else if (field.kind == FieldInfo::Kind::feature) {
-      json.value(name_of(Feature{static_cast<FeatureKind>(number(0)), static_cast<std::uint8_t>(number(1))}));
-    } else if (role.names == Names::element) {
-      write_element(json, {static_cast<std::uint32_t>(number(0)), static_cast<std::uint32_t>(number(1))},
-                    record.kind_of_element(row, role.side));
-    } else if (field.scalar == ScalarType::float64 && field.count > 1) {
-      const std::size_t count = role.names == Names::weights  // one for each vertex of the element
-                                    ? 1 + static_cast<std::size_t>(record.kind_of_element(row, role.side))
-                                    : field.count;
-      json.begin_array();
-      for (std::size_t i = 0; i < count; ++i) json.value(real_number(field, row, i));
-      json.end_array();
-    } else if (field.scalar == ScalarType::float64) {
-      json.value(real_number(field, row, 0));
-    } else if (field.scalar == ScalarType::boolean) {
-      json.value(number(0) != 0);
-    } else if (!field.words.empty()) {
-      json.value(field.words[number(0)]);
-    } else {
-      json.value(number(0));
-    }
+    const bool is_list = (field.scalar == ScalarType::float64 && field.count > 1) ||
+                         (field.role.names == Names::element &&
+                          record.kind_of_element(row, field.role.side) == FeatureKind::edge);
+    if (is_list) json.begin_array();
+    for_each_value(record, field, row, [&]<class Value>(const Value& value) {
+      if constexpr (!std::is_same_v<Value, std::nullptr_t>) json.value(value);
+    });
+    if (is_list) json.end_array();
   }
 }
 

@@ -50,6 +50,36 @@ constexpr bool is_of_range(const Role& role) {
   return role.names == Names::first_row || (role.names == Names::rows && *role.list != 0);
 }
 
+/// Calls `visit(value)` for the value of a member in each column: a number, a truth value or a text, or
+/// nullptr where a vertex or a face has no second number, or an element has no third weight.
+template <class Visit>
+void for_each_value(const RecordInfo& record, const FieldInfo& field, const std::byte* row,
+                    const Visit& visit) {
+  const auto number = [&](std::size_t i) { return number_of(field, row, i); };
+  const Names names = field.role.names;
+  // An element has as many numbers and weights as vertices, a face one number.
+  const auto kind = names == Names::element || names == Names::weights
+                        ? record.kind_of_element(row, field.role.side)
+                        : FeatureKind::vertex;
+  if (field.kind == FieldInfo::Kind::feature) {
+    visit(name_of(Feature{static_cast<FeatureKind>(number(0)), static_cast<std::uint8_t>(number(1))}));
+  } else if (field.scalar == ScalarType::float64) {
+    for (std::size_t i = 0; i < field.count; ++i) {
+      const bool has_none = names == Names::weights && i > static_cast<std::size_t>(kind);
+      has_none ? visit(nullptr) : visit(real_number(field, row, i));
+    }
+  } else if (names == Names::element) {
+    visit(number(0));
+    kind == FeatureKind::edge ? visit(number(1)) : visit(nullptr);
+  } else if (field.scalar == ScalarType::boolean) {
+    visit(number(0) != 0);
+  } else if (!field.words.empty()) {
+    visit(field.words[number(0)]);
+  } else {
+    visit(number(0));
+  }
+}
+
 /// Writes the members of a record by their keys. What a record refers to by ranges of other lists is left
 /// out: the caller writes it as lists of the record. `only_exact` leaves out what is rounded.
 void write_members(JsonWriter& json, const RecordInfo& record, const std::byte* row, bool only_exact);

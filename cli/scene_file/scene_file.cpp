@@ -7,7 +7,6 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -20,7 +19,6 @@
 #include "scene_file/scene_motion.hpp"
 #include "scene_file/toml_reader.hpp"
 #include "supple/comparison.hpp"
-#include "supple/error.hpp"
 #include "supple/format_descriptions.hpp"
 #include "supple/models.hpp"
 #include "supple/simulation_descriptions.hpp"
@@ -36,8 +34,8 @@ constexpr std::array words_of_method{"default", "2007"};
 std::string read_toml(const fs::path& path) {
   std::string text = read_text(path, most_toml_bytes + 1);
   if (text.size() > most_toml_bytes)
-    throw Error(fmt::format("{}: a scene file has at most {} MB; name large meshes by their files",
-                            path.string(), most_toml_bytes >> 20));
+    fail("{}: a scene file has at most {} MB; name large meshes by their files", path.string(),
+         most_toml_bytes >> 20);
   return text;
 }
 
@@ -46,8 +44,8 @@ toml::table parse_toml(const std::string& text, const fs::path& path) {
   try {
     return toml::parse(text, path.string());
   } catch (const toml::parse_error& error) {
-    throw Error(fmt::format("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line,
-                            one_line(std::string(error.description()))));
+    fail("{}:{}: not valid TOML: {}", path.string(), error.source().begin.line,
+         one_line(std::string(error.description())));
   }
 }
 
@@ -74,8 +72,7 @@ class TriangleBudget {
   /// Throws when `count` more triangles in each of `copies` are too many.
   void check(TomlReader& reader, const char* key, std::uint64_t count, std::uint64_t copies = 1) const {
     if (count > (most_ - used_) / std::max<std::uint64_t>(copies, 1))
-      reader.fail(key,
-                  fmt::format("more than {} triangles in all objects; give fewer or smaller objects", most_));
+      reader.fail(key, "more than {} triangles in all objects; give fewer or smaller objects", most_);
   }
   void use(std::uint64_t count) { used_ += count; }
 
@@ -118,7 +115,7 @@ TriangleMesh read_parametrised_model(TomlReader& reader, const std::string& name
     budget.check(reader, "columns", 2 * std::uint64_t{columns} * rows);
     return make_cloth(columns, rows, width, depth);
   }
-  reader.fail("model", fmt::format("there is no model '{}'; choose one of {}", name, available_models()));
+  reader.fail("model", "there is no model '{}'; choose one of {}", name, available_models());
 }
 
 /// Meshes by file or model name, because a scene often uses the same mesh many times.
@@ -167,8 +164,7 @@ Shape read_shape(TomlReader& reader, const fs::path& folder, const FrameSequence
   }
   const fs::path path = folder / mesh;
   if (!fs::exists(path))
-    reader.fail("mesh",
-                fmt::format("there is no file {}; paths start at the scene file's folder", path.string()));
+    reader.fail("mesh", "there is no file {}; paths start at the scene file's folder", path.string());
   const auto [found, is_new] = shapes.meshes.try_emplace(path.string());
   if (is_new) found->second = read_mesh(path);
   return converted(found->second, path);
@@ -218,8 +214,7 @@ Copies read_copies(TomlReader& reader) {
   if (reader.has("spacing") && !reader.has("repeat"))
     reader.fail("spacing", "has no effect without repeat = [nx, ny, nz]");
   if (copies.count() > most_copies)
-    reader.fail("repeat",
-                fmt::format("these are {} copies; at most {} are allowed", copies.count(), most_copies));
+    reader.fail("repeat", "these are {} copies; at most {} are allowed", copies.count(), most_copies);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (copies.repeat[axis] > 1 && copies.spacing[static_cast<int>(axis)] == 0)
       reader.fail("repeat", "needs spacing = [dx, dy, dz] along each axis with more than one copy");
@@ -304,7 +299,7 @@ void read_detection(TomlReader& reader, const std::optional<Border>& border, Sce
       scene);
   for (const OptionNeed& need : option_needs()) {
     if (reader.has(need.key) && !need.is_met(scene))
-      reader.fail(need.key, fmt::format("has no effect without {} = {}", need.decider, need.values));
+      reader.fail(need.key, "has no effect without {} = {}", need.decider, need.values);
   }
 }
 
@@ -371,11 +366,10 @@ Input read_scene_text(std::string text, const fs::path& path, const SceneOverrid
   input.files.push_back(path);
   for (const auto& [name, shape] : shapes.meshes) input.files.emplace_back(name);
   for (const InputObject& object : input.objects) {
-    const auto* frames = object.motion ? std::get_if<FrameSequence>(&*object.motion) : nullptr;
-    if (frames != nullptr) input.files.insert(input.files.end(), frames->files.begin(), frames->files.end());
+    if (const auto* frames = motion_of<FrameSequence>(object))
+      input.files.insert(input.files.end(), frames->files.begin(), frames->files.end());
   }
-  if (input.objects.empty())
-    throw Error(fmt::format("{}: has no objects; add an [[object]] with mesh or model", path.string()));
+  if (input.objects.empty()) fail("{}: has no objects; add an [[object]] with mesh or model", path.string());
   return input;
 }
 

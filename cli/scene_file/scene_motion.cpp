@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "inputs/clips.hpp"
@@ -65,8 +64,7 @@ void SceneMotion::read_kind(TomlReader& reader, Vec3d gravity) {
         "kind is missing; choose kind = \"wave\", \"mass_spring\", \"rigid\", \"frames\", \"clip\" or "
         "\"cache\"");
   else
-    reader.fail("kind",
-                fmt::format("'{}' is not one of wave, mass_spring, rigid, frames, clip, cache", kind));
+    reader.fail("kind", "'{}' is not one of wave, mass_spring, rigid, frames, clip, cache", kind);
 }
 
 void SceneMotion::read_playback(TomlReader& reader, bool is_cache) {
@@ -105,7 +103,7 @@ void SceneMotion::read_files(const std::filesystem::path* mesh_file, double time
       return player.steps(time_step, playback.speed, playback.loop, conversion, placement);
     };
   } catch (const Error& error) {
-    reader.fail("kind", error.what());
+    reader.fail("kind", "{}", error.what());
   }
 }
 
@@ -127,7 +125,7 @@ void SceneMotion::read_pulls(TomlReader& reader) {
     pull.read("by", added.by);
     pull.read("seconds", added.seconds, ValueRange::above(0));
     for (const char* key : {"box", "by"}) {
-      if (!pull.has(key)) pull.fail(key, fmt::format("{} is missing; a pull is {{ box, by, seconds }}", key));
+      if (!pull.has(key)) pull.fail(key, "{} is missing; a pull is {{ box, by, seconds }}", key);
     }
     pull.finish();
   }
@@ -143,11 +141,11 @@ FrameSequence SceneMotion::read_frames(TomlReader& reader) const {
   try {
     frames.files = expand_patterns({(file_.parent_path() / pattern).string()});
   } catch (const Error& error) {
-    reader.fail("files", error.what());
+    reader.fail("files", "{}", error.what());
   }
   if (!std::filesystem::exists(frames.files.front()))
-    reader.fail("files", fmt::format("there is no file {}; paths start at the scene file's folder",
-                                     frames.files.front().string()));
+    reader.fail("files", "there is no file {}; paths start at the scene file's folder",
+                frames.files.front().string());
   return frames;
 }
 
@@ -183,9 +181,10 @@ void SceneMotion::select_vertices(MassSpringMotion& motion, const std::vector<Ve
                                     [&](std::uint32_t vertex) { return contains(taken, vertex); });
     if (twice != found.end())
       TomlReader(file_, *table_, where_)
-          .fail("pull", fmt::format("box {} holds vertex {}, which is fixed or pulled by another box; the "
-                                    "boxes must not share vertices",
-                                    i, *twice));
+          .fail("pull",
+                "box {} holds vertex {}, which is fixed or pulled by another box; the "
+                "boxes must not share vertices",
+                i, *twice);
     if (found.empty()) continue;
     pulls_found_[i] = true;
     motion.handles.push_back({found, pulls_[i].by, pulls_[i].seconds});
@@ -199,9 +198,10 @@ void SceneMotion::check_boxes() const {
     const auto empty = std::find(found.begin(), found.end(), false);
     if (empty != found.end())
       TomlReader(file_, *table_, where_)
-          .fail(key, fmt::format("box {} holds no vertex; boxes are in the coordinates of the placed mesh, "
-                                 "which supple info shows",
-                                 empty - found.begin()));
+          .fail(key,
+                "box {} holds no vertex; boxes are in the coordinates of the placed mesh, "
+                "which supple info shows",
+                empty - found.begin());
   };
   check("fixed", fixed_found_);
   check("pull", pulls_found_);

@@ -5,10 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include "base/text.hpp"
-#include "supple/error.hpp"
 
 namespace supple::cli {
 namespace {
@@ -51,7 +47,7 @@ void check_toml_limits(std::string_view text, const std::filesystem::path& path)
   std::string open;    // the brackets that are not closed yet
   bool begins = true;  // a line outside of all brackets
   const auto fail = [&](const std::string& what) {
-    throw Error(fmt::format("{}:{}: not valid TOML: {}", path.string(), line, what));
+    cli::fail("{}:{}: not valid TOML: {}", path.string(), line, what);
   };
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   for (std::size_t i = 0; i < text.size();) {
@@ -91,27 +87,16 @@ const toml::node* TomlReader::node(const std::string& key) {
   return table_.get(key);
 }
 
-void TomlReader::fail_at(const toml::source_region& place, const std::string& key,
-                         const std::string& what) const {
-  throw Error(one_line(fmt::format("{}:{}: {}: {}{}{}", file_.string(), place.begin.line, where_, key,
-                                   key.empty() ? "" : ": ", what)));
-}
-
-void TomlReader::fail(const std::string& key, const std::string& what) const {
-  const toml::node* node = table_.get(key);
-  fail_at(node ? node->source() : table_.source(), node ? key : "", what);
-}
-
 double TomlReader::number(const toml::node& node, const std::string& key, const char* expected) const {
   if (const auto* value = node.as_floating_point(); value && std::isfinite(value->get())) return value->get();
   if (const auto* value = node.as_integer()) return static_cast<double>(value->get());
-  fail_at(node.source(), key, fmt::format("must be {}", expected));
+  fail_at(node.source(), key, "must be {}", expected);
 }
 
 const toml::array& TomlReader::array_of(const toml::node& node, const std::string& key,
                                         const std::string& expected, std::size_t size) const {
   const toml::array* array = node.as_array();
-  if (!array || array->size() != size) fail_at(node.source(), key, "must be " + expected);
+  if (!array || array->size() != size) fail_at(node.source(), key, "must be {}", expected);
   return *array;
 }
 
@@ -124,7 +109,7 @@ std::int64_t TomlReader::integer(const std::string& key, const ValueRange& range
   const toml::node& found = *node(key);
   const auto* value = found.as_integer();
   if (!value || value->get() < 0 || !range.allows(static_cast<std::uint64_t>(value->get())))
-    fail_at(found.source(), key, "must be " + text_of(range, true));
+    fail_at(found.source(), key, "must be {}", text_of(range, true));
   return value->get();
 }
 
@@ -148,7 +133,7 @@ void TomlReader::read(const std::string& key, double& value, const ValueRange& r
   if (!found) return;
   const std::string expected = text_of(range, false);
   value = number(*found, key, expected.c_str());
-  if (!range.allows(value)) fail(key, "must be " + expected);
+  if (!range.allows(value)) fail(key, "must be {}", expected);
 }
 
 std::optional<std::size_t> TomlReader::read_word(const std::string& key,
@@ -157,8 +142,7 @@ std::optional<std::size_t> TomlReader::read_word(const std::string& key,
   std::string given;
   read(key, given);
   const auto found = std::find(choices.begin(), choices.end(), given);
-  if (found == choices.end())
-    fail(key, fmt::format("'{}' is not one of {}", given, fmt::join(choices, ", ")));
+  if (found == choices.end()) fail(key, "'{}' is not one of {}", given, fmt::join(choices, ", "));
   return static_cast<std::size_t>(found - choices.begin());
 }
 
@@ -171,7 +155,7 @@ void TomlReader::read(const std::string& key, std::array<std::uint32_t, 3>& valu
   for (std::size_t i = 0; i < value.size(); ++i) {
     const auto* number = array[i].as_integer();
     if (!number || number->get() < lowest || number->get() > highest)
-      fail_at(array[i].source(), key, "must be " + expected);
+      fail_at(array[i].source(), key, "must be {}", expected);
     value[i] = static_cast<std::uint32_t>(number->get());
   }
 }
@@ -191,9 +175,8 @@ std::array<Vec3d, 2> TomlReader::corners(const toml::node& node, const std::stri
   const std::array<Vec3d, 2> box{point(array[0], key, expected), point(array[1], key, expected)};
   for (int axis = 0; axis < 3; ++axis) {
     if (box[0][axis] < box[1][axis] || (may_be_flat && box[0][axis] == box[1][axis])) continue;
-    fail_at(node.source(), key,
-            fmt::format("each coordinate of the first corner must {} the second's",
-                        may_be_flat ? "not be above" : "be below"));
+    fail_at(node.source(), key, "each coordinate of the first corner must {} the second's",
+            may_be_flat ? "not be above" : "be below");
   }
   return box;
 }
@@ -212,7 +195,7 @@ bool TomlReader::read_cube(const std::string& key, const std::string& word, std:
   std::array<double, 4> numbers{};
   for (std::size_t i = 0; i < 4; ++i) numbers[i] = number(array[i], key, expected.c_str());
   cube = RootCube{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
-  if (!is_valid(*cube)) fail(key, "must be " + expected);
+  if (!is_valid(*cube)) fail(key, "must be {}", expected);
   return true;
 }
 
@@ -232,7 +215,7 @@ std::vector<const toml::table*> TomlReader::tables(const std::string& key, const
   std::vector<const toml::table*> tables;
   if (!found) return tables;
   if (!found->is_array_of_tables())
-    fail_at(found->source(), key, fmt::format("must be written {}, once for each", written));
+    fail_at(found->source(), key, "must be written {}, once for each", written);
   for (const toml::node& table : *found->as_array()) tables.push_back(table.as_table());
   return tables;
 }
@@ -241,9 +224,8 @@ void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
     if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
     const auto nearest = nearest_of(std::string(key.str()), known_);
-    fail_at(key.source(), std::string(key.str()),
-            fmt::format("unknown key{}; allowed here: {}",
-                        nearest ? fmt::format(", did you mean {}?", *nearest) : "", fmt::join(known_, ", ")));
+    fail_at(key.source(), std::string(key.str()), "unknown key{}; allowed here: {}",
+            nearest ? fmt::format(", did you mean {}?", *nearest) : "", fmt::join(known_, ", "));
   }
 }
 

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.hpp"
 #include "supple/description.hpp"
 #include "supple/types.hpp"
 
@@ -69,7 +70,11 @@ class TomlReader {
   /// Throws when the table has a key that was not read.
   void finish() const;
   /// Throws an error about a key, or about the table when the key is absent.
-  [[noreturn]] void fail(const std::string& key, const std::string& what) const;
+  template <class... Args>
+  [[noreturn]] void fail(const std::string& key, fmt::format_string<Args...> what, Args&&... args) const {
+    const toml::node* node = table_.get(key);
+    fail_at(node ? node->source() : table_.source(), node ? key : "", what, std::forward<Args>(args)...);
+  }
 
  private:
   const toml::node* node(const std::string& key);
@@ -78,7 +83,7 @@ class TomlReader {
   auto value_of(const std::string& key, const char* expected) {
     const toml::node* const found = node(key);
     const auto* const value = found ? found->as<Type>() : nullptr;
-    if (found && !value) fail(key, std::string("must be ") + expected);
+    if (found && !value) fail(key, "must be {}", expected);
     return value;
   }
   const toml::array& array_of(const toml::node& node, const std::string& key, const std::string& expected,
@@ -92,8 +97,12 @@ class TomlReader {
   }
   std::array<Vec3d, 2> corners(const toml::node& node, const std::string& key, const char* expected,
                                bool may_be_flat) const;
+  template <class... Args>
   [[noreturn]] void fail_at(const toml::source_region& place, const std::string& key,
-                            const std::string& what) const;
+                            fmt::format_string<Args...> what, Args&&... args) const {
+    cli::fail("{}:{}: {}: {}{}{}", file_.string(), place.begin.line, where_, key, key.empty() ? "" : ": ",
+              fmt::format(what, std::forward<Args>(args)...));
+  }
 
   std::filesystem::path file_;
   const toml::table& table_;
@@ -108,7 +117,7 @@ void TomlReader::read(const Field<Struct, Value>& field, Value& value) {
     std::string given;
     read(field.key, given);
     const std::optional<Value> found = value_of_set<Value>(given);
-    if (!found) fail(field.key, "'" + given + "' is not " + list_of_set_words<Value>());
+    if (!found) fail(field.key, "'{}' is not {}", given, list_of_set_words<Value>());
     value = *found;
   } else if constexpr (Worded<Value>) {
     if (const auto place = read_word(field.key, words<Value>)) value = static_cast<Value>(*place);

@@ -9,22 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include "base/exit_status.hpp"
-#include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "base/run_program.hpp"
 #include "base/text.hpp"
-#include "commands/build_simulation.hpp"
 #include "export/embedded.hpp"
 #include "export/page_file.hpp"
-#include "inputs/inputs.hpp"
 #include "server/access.hpp"
 #include "server/browser_visit.hpp"
 #include "server/server.hpp"
-#include "session/messages/mesh_warnings.hpp"
 #include "session/packed/packed_scene.hpp"
 #include "session/session.hpp"
-#include "supple/error.hpp"
 #include "view/build_scene_view.hpp"
 #include "view_file/view_file.hpp"
 
@@ -43,11 +37,11 @@ double size_of_frames(const viewer::SceneView& show) {
 
 void check_page_size(const std::string& file, double bytes, double most) {
   if (bytes <= most) return;
-  throw Error(
-      fmt::format("{}: the page would have {:.0f} MB{}, but browsers open at most {} MB; record fewer frames "
-                  "or coarser meshes, or send the recording itself",
-                  file, bytes / 1e6, most > viewer::largest_page ? " before compression" : "",
-                  viewer::largest_page / 1'000'000));
+  fail(
+      "{}: the page would have {:.0f} MB{}, but browsers open at most {} MB; record fewer frames "
+      "or coarser meshes, or send the recording itself",
+      file, bytes / 1e6, most > viewer::largest_page ? " before compression" : "",
+      viewer::largest_page / 1'000'000);
 }
 
 int write_page(const viewer::SceneView& show, const ViewOptions& options, std::string_view template_page) {
@@ -96,26 +90,13 @@ int serve(viewer::SceneView show, const ViewOptions& options, std::string_view p
   return exit_done;
 }
 
-/// The input is not kept: a recording that grows must have no other owner.
-viewer::SceneView read_show(const ViewOptions& options) {
-  Input input = read_view_input(options);
-  check_output_names({{"--export", options.page_file}, {"--view", options.view_file}}, input.files);
-  apply(options, input);
-  print_notes(input);
-  return build_scene_view(input, options);
-}
-
 }  // namespace
 
 int run_view(const ViewOptions& options) {
   check_viewer();
-  const std::string view = options.view_file.empty() ? "" : viewer::read_view(options.view_file);
-  const std::string page = view.empty()
-                               ? std::string(viewer::embedded_page())
-                               : viewer::page_with_json(viewer::embedded_page(), "supple-view", view);
-  viewer::SceneView show = read_show(options);
-  for (const std::string& warning : viewer::warnings_of_meshes(show))
-    fmt::print(stderr, "supple: warning: {}\n", one_line(warning));
+  const std::string page = page_of(options);
+  viewer::SceneView show = read_scene_view(options, {"--export", options.page_file});
+  print_warnings(show);
   if (!options.page_file.empty()) return write_page(show, options, page);
   warn_of_missing_threads(options.scene.threads);
   return serve(std::move(show), options, page);

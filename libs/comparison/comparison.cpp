@@ -1,8 +1,6 @@
 #include "supple/comparison.hpp"
 
-#include "comparison/broad_phase/sweep_search.hpp"
-#include "comparison/builds/builds.hpp"
-#include "comparison/volumes/volumes.hpp"
+#include "comparison/methods.hpp"
 #include "octree/comparison_methods.hpp"
 
 namespace supple {

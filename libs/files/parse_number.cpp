@@ -1,7 +1,6 @@
 #include "files/number_text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <string_view>
 #include <system_error>

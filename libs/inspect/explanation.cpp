@@ -266,26 +266,25 @@ bool are_joined(const World& world, const DetectResult& result, const ContactJob
       return std::find(of.begin(), of.end(), vertex) != of.end();
     });
   };
-  const auto joins = [&](FeatureKind kind_a, FeatureKind kind_b, const auto& pair) {
-    const bool face_a = kind_a == FeatureKind::face, face_b = kind_b == FeatureKind::face;
+  const auto joins = [&](const auto& pair) {
+    std::array<FeatureKind, 2> kinds;
+    if constexpr (requires { pair.kind_a; })
+      kinds = {pair.kind_a, pair.kind_b};
+    else
+      kinds = feature_kinds(pair.kind);
+    const bool face_a = kinds[0] == FeatureKind::face, face_b = kinds[1] == FeatureKind::face;
     if (has(a, face_a, pair.element_a) && has(b, face_b, pair.element_b)) return true;
     return job.a == job.b && has(b, face_a, pair.element_a) && has(a, face_b, pair.element_b);
   };
   const ObjectPair ids{world.id_of(job.a), world.id_of(job.b)};
-  for (const ContactGroup& group : result.continuous_groups) {
-    if (ObjectPair{group.a, group.b} != ids) continue;
-    for (const ContinuousContact& contact : result.continuous_contacts_of(group)) {
-      const auto [kind_a, kind_b] = feature_kinds(contact.kind);
-      if (joins(kind_a, kind_b, contact)) return true;
-    }
-  }
-  for (const ContactGroup& group : result.proximity_groups) {
-    if (ObjectPair{group.a, group.b} != ids) continue;
-    for (const ProximityPair& pair : result.proximity_pairs_of(group)) {
-      if (joins(pair.kind_a, pair.kind_b, pair)) return true;
-    }
-  }
-  return false;
+  const auto any_joins = [&](std::span<const ContactGroup> groups, const auto& records) {
+    return std::ranges::any_of(groups, [&](const ContactGroup& group) {
+      return ObjectPair{group.a, group.b} == ids &&
+             std::ranges::any_of(records.subspan(group.first_contact, group.contact_count), joins);
+    });
+  };
+  return any_joins(result.continuous_groups, result.continuous_contacts) ||
+         any_joins(result.proximity_groups, result.proximity_pairs);
 }
 
 /// Follows the stages of `detect`. Triangles are in the order of the traversal.

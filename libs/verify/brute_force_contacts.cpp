@@ -1,13 +1,9 @@
-#include "verify/brute_force_contacts.hpp"
+#include "verify/brute_force.hpp"
 
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <set>
 
 #include "mesh/share_vertex.hpp"
-#include "supple/triangle_intersection.hpp"
-#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple {
 namespace {

@@ -1,13 +1,9 @@
-#include "verify/brute_force_impacts.hpp"
+#include "verify/brute_force.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <optional>
 #include <tuple>
 #include <utility>
-
-#include "verify/algebra/distance_algebra.hpp"
 
 namespace supple {
 namespace {

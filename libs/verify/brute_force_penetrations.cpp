@@ -1,9 +1,8 @@
-#include "verify/brute_force_penetrations.hpp"
+#include "verify/brute_force.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "core/sort_once.hpp"
@@ -11,7 +10,6 @@
 #include "geometry/vector.hpp"
 #include "mesh/vertex_sets.hpp"
 #include "queries/feature_name.hpp"
-#include "verify/brute_force_queries.hpp"
 
 namespace supple {
 namespace {

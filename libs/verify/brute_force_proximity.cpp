@@ -1,13 +1,9 @@
-#include "verify/brute_force_proximity.hpp"
+#include "verify/brute_force.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <optional>
 #include <tuple>
 #include <utility>
-
-#include "verify/plain_surface.hpp"
 
 namespace supple {
 namespace {

@@ -1,7 +1,6 @@
-#include "verify/brute_force_queries.hpp"
+#include "verify/brute_force.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>

@@ -9,16 +9,13 @@
 #include "core/error.hpp"
 #include "core/stop_signal.hpp"
 #include "scene/scene_implementation.hpp"
-#include "verify/brute_force_contacts.hpp"
-#include "verify/brute_force_impacts.hpp"
-#include "verify/brute_force_penetrations.hpp"
-#include "verify/brute_force_proximity.hpp"
+#include "verify/brute_force.hpp"
 
 namespace supple {
 namespace {
 
 /// Compares what was found for two objects, or for one object with itself. `group` has the contacts that were
-/// reported; null when there are none.
+/// reported; it is empty when there are none.
 struct PairVerification {
   const World& world;
   const Question& question;
@@ -30,13 +27,11 @@ struct PairVerification {
   PlainObject a = plain_object(object_a), b = plain_object(object_b);
   std::vector<TrianglePair> touching{};
 
-  void verify_contacts(const ContactGroup* group) {
+  void verify_contacts(const ContactGroup& group) {
     touching = intersecting_pairs_by_brute_force(a, b, same_object, world.parallel);
     std::vector<TrianglePair> reported;
-    if (group != nullptr) {
-      for (const Contact& contact : result.contacts_of(*group))
-        reported.push_back({contact.triangle_a, contact.triangle_b});
-    }
+    for (const Contact& contact : result.contacts_of(group))
+      reported.push_back({contact.triangle_a, contact.triangle_b});
     const std::uint64_t count = a.face_count;
     report.triangle_pairs_checked += same_object ? count * (count - 1) / 2 : count * b.face_count;
     report.intersecting_pairs += touching.size();
@@ -51,7 +46,7 @@ struct PairVerification {
     note(reported, touching, false);
   }
 
-  void verify_impacts(const ContactGroup* group) const {
+  void verify_impacts(const ContactGroup& group) const {
     ImpactOptions options = question.impact.impact;
     options.min_separation = question.separation_of(object_a, object_b);
     const BruteForceImpacts truth =
@@ -59,21 +54,17 @@ struct PairVerification {
                                     options, question.impact.kinds, world.parallel);
     report.element_pairs_checked += truth.pairs_checked;
     report.touching_element_pairs += truth.touching.size();
-    std::span<const ContinuousContact> reported;
-    if (group != nullptr) reported = result.continuous_contacts_of(*group);
-    compare_impacts(pair, reported, truth.touching, question.impact.listing, result.continuous_contacts,
-                    report.continuous_differences);
+    compare_impacts(pair, result.continuous_contacts_of(group), truth.touching, question.impact.listing,
+                    result.continuous_contacts, report.continuous_differences);
   }
 
-  void verify_proximity(const ContactGroup* group) const {
+  void verify_proximity(const ContactGroup& group) const {
     const BruteForceProximity truth = find_proximity_by_brute_force(
         a, b, same_object, reach_of_margins(object_a.options.margin, object_b.options.margin),
         question.proximity_listing, question.impact.kinds, world.parallel);
     report.proximity_pairs_checked += truth.pairs_checked;
     report.near_pairs += truth.near.size();
-    std::span<const ProximityPair> reported;
-    if (group != nullptr) reported = result.proximity_pairs_of(*group);
-    compare_proximity(pair, reported, truth.near, report.proximity_differences);
+    compare_proximity(pair, result.proximity_pairs_of(group), truth.near, report.proximity_differences);
   }
 
   /// Both objects in each other, where the other one is solid.
@@ -123,11 +114,11 @@ VerifyReport verify(const World& world, const Question& question, const DetectRe
     if (report.stopped) break;
     const auto group_in = [&](auto& place, const auto& groups) {
       const bool is_reported = place != groups.end() && place->a == pair.a && place->b == pair.b;
-      return is_reported ? &*place++ : nullptr;
+      return is_reported ? *place++ : ContactGroup{};
     };
-    const ContactGroup* const of_contacts = group_in(contacts, result.groups);
-    const ContactGroup* const of_impacts = group_in(impacts, result.continuous_groups);
-    const ContactGroup* const of_proximity = group_in(near, result.proximity_groups);
+    const ContactGroup of_contacts = group_in(contacts, result.groups);
+    const ContactGroup of_impacts = group_in(impacts, result.continuous_groups);
+    const ContactGroup of_proximity = group_in(near, result.proximity_groups);
     if (number++ != next) continue;
     next += share.stride;
     PairVerification verification{world, question, result, pair, report};

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "core/error.hpp"
 #include "geometry/vector.hpp"
@@ -12,7 +10,7 @@
 #include "scene/scene_implementation.hpp"
 #include "supple/result_descriptions.hpp"
 #include "supple/verify.hpp"
-#include "verify/brute_force_queries.hpp"
+#include "verify/brute_force.hpp"
 
 namespace supple {
 namespace {

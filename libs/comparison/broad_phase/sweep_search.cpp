@@ -1,4 +1,4 @@
-#include "comparison/broad_phase/sweep_search.hpp"
+#include "comparison/methods.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,8 @@
-#include "comparison/builds/builds.hpp"
+#include "comparison/methods.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"

@@ -1,4 +1,4 @@
-#include "comparison/builds/builds.hpp"
+#include "comparison/methods.hpp"
 
 #include <algorithm>
 #include <bit>

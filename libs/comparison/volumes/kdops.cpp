@@ -1,11 +1,9 @@
-#include "comparison/volumes/volumes.hpp"
+#include "comparison/methods.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <vector>
 
 #include "comparison/volumes/volume_kernels.hpp"
 #include "octree/refit_bottom_up.hpp"

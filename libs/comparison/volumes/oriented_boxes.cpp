@@ -1,13 +1,10 @@
-#include "comparison/volumes/volumes.hpp"
+#include "comparison/methods.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "comparison/volumes/volume_kernels.hpp"
 #include "core/float_rounding.hpp"

@@ -1,14 +1,11 @@
-#include "comparison/volumes/volumes.hpp"
+#include "comparison/methods.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "comparison/volumes/volume_kernels.hpp"
 #include "core/float_rounding.hpp"

@@ -5,8 +5,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <array>
-
 #include "core/packed_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "files/polygon/outline_view.hpp"
+#include "files/polygon/outline.hpp"
 
 namespace supple {
 

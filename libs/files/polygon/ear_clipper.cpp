@@ -1,13 +1,11 @@
-#include "files/polygon/ear_clipper.hpp"
+#include "files/polygon/outline.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <queue>
 #include <utility>
-#include <vector>
 
 #include "files/polygon/corner_index.hpp"
 

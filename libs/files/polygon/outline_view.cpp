@@ -1,9 +1,8 @@
-#include "files/polygon/outline_view.hpp"
+#include "files/polygon/outline.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "geometry/numbers/integer_points.hpp"
 #include "geometry/vector.hpp"

@@ -1,12 +1,9 @@
-#include "files/polygon/outline_winding.hpp"
+#include "files/polygon/outline.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <set>
-#include <utility>
-#include <vector>
 
 namespace supple {
 namespace {

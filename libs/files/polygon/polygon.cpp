@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <vector>
 
-#include "files/polygon/ear_clipper.hpp"
-#include "files/polygon/outline_view.hpp"
-#include "files/polygon/outline_winding.hpp"
+#include "files/polygon/outline.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {

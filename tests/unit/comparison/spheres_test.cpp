@@ -1,6 +1,6 @@
 // Spheres around nodes: enclosing, smallest, and safe for degenerate positions.
 
-#include "comparison/volumes/volumes.hpp"
+#include "comparison/methods.hpp"
 
 #include <gtest/gtest.h>
 

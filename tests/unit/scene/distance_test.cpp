@@ -19,7 +19,7 @@
 #include "support/hard_scenes.hpp"
 #include "support/random.hpp"
 #include "verify/algebra/distance_algebra.hpp"
-#include "verify/brute_force_proximity.hpp"
+#include "verify/brute_force.hpp"
 
 namespace supple::distance_test {
 

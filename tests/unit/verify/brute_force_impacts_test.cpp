@@ -1,6 +1,6 @@
 // Checks that `verify` of continuous contacts finds every fault inserted into a correct result.
 
-#include "verify/brute_force_impacts.hpp"
+#include "verify/brute_force.hpp"
 
 #include <gtest/gtest.h>
 

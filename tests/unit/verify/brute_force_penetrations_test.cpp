@@ -1,6 +1,6 @@
 // The brute force of `verify` notices wrong penetrations.
 
-#include "verify/brute_force_penetrations.hpp"
+#include "verify/brute_force.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "supple/verify.hpp"
-#include "verify/brute_force_penetrations.hpp"
+#include "verify/brute_force.hpp"
 
 namespace supple::verify_manifolds_test {
 

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "geometry/exact_predicates.hpp"
+#include "supple/mesh.hpp"
 #include "supple/types.hpp"
 
 namespace supple {
@@ -47,5 +49,30 @@ class OutlineView {
 /// Whether a corner is farther from the mean plane of the corners than 1/1000 of the largest extent along an
 /// axis. Computed with rounding.
 bool is_bent(std::span<const Vec3d> corners);
+
+struct OutlineWinding {
+  /// Two edges cross, or the outline winds around some area neither once nor not at all. Edges and corners
+  /// that touch or coincide do not cross.
+  bool crosses = false;
+  /// Whether the area directly below each corner is inside, for an outline that does not cross itself. Below
+  /// is to the right of the direction of `OutlineView::before`.
+  std::vector<bool> is_inside_below{};
+};
+
+/// Exact; O(n log n) for n corners.
+OutlineWinding find_winding(const OutlineView& view);
+
+/// Cuts a polygon into triangles by its ears: corners whose triangle with both neighbours lies inside the
+/// outline. Writes view.size() - 2 triangles of corner numbers, which keep the direction of the outline.
+/// `winding` is that of `find_winding`. Returns false when a triangle turns to the right.
+///
+/// An ear is cut only where the outline winds once around its triangle. So when every corner can be cut, the
+/// triangles cover the inside once. Where an outline that does not cross itself comes back to a place, its
+/// edges there get new links, so that each corner has a part of the inside to itself. Then the outline is
+/// several loops, and corners at one place do not hinder each other. When no ear is left, as in an outline
+/// that crosses itself, corners are cut whose triangle turns left, and then any. Outlines that cross
+/// themselves can have many corners in many triangles, so their corners are no longer tested after 100 tests
+/// a corner.
+bool clip_ears(const OutlineView& view, const OutlineWinding& winding, std::span<Triangle> triangles);
 
 }  // namespace supple
