@@ -4,7 +4,6 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "supple/models.hpp"

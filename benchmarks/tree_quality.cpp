@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "supple/inspection.hpp"
 #include "supple/supple.hpp"
 #include "workloads/degrading_shapes.hpp"
 
