@@ -118,8 +118,7 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
     for (const Vec3d& p : regions_[side].middles()) way_out_.add_probe(side, p);
   }
 
-  if (input_.a_is_solid && input_.b_is_solid && !input_.same_object)
-    add_common_points(members);
+  if (input_.a_is_solid && input_.b_is_solid && !input_.same_object) add_common_points(members);
 
   list_face_normals(members, false);
   if (directions_.empty()) list_face_normals(members, true);
