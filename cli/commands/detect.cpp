@@ -129,6 +129,7 @@ int run_detect(const DetectOptions& given, Ranks& ranks) {
   }
   interruption.end();
   int status = exit_done;
+  if (done < frames - first) share_signal(interruption, ranks);
   ranks.together([&] {
     if (done < frames - first) {
       status = end_early(interruption);

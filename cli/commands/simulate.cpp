@@ -12,7 +12,6 @@
 #include <random>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/files.hpp"
@@ -190,6 +189,7 @@ class Run {
     energies_at_end_ = objects_.energies();
     recorder_.close();
     int status = exit_unusable;
+    if (stable && frames_ < steps_ + 1) share_signal(interruption, ranks_);
     ranks_.together([&] {
       if (stable && frames_ < steps_ + 1) {
         status = end_early(interruption, Moment::between_steps);

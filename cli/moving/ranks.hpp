@@ -55,9 +55,13 @@ Options options_of_rank(Options options, const Ranks& ranks) {
   return options;
 }
 
-/// Whether a signal or the time limit has ended the run on any rank. All ranks then know the signal.
-inline bool is_ended(Interruption& interruption, Ranks& ranks) {
+/// All ranks then know the signal that one of them has received.
+inline void share_signal(Interruption& interruption, Ranks& ranks) {
   if (const int signal = ranks.largest(interruption.signal()); signal != 0) interruption.set_signal(signal);
+}
+
+/// Whether a signal or the time limit has ended the run on any rank.
+inline bool is_ended(const Interruption& interruption, Ranks& ranks) {
   return ranks.largest(interruption.is_requested() ? 1 : 0) != 0;
 }
 

@@ -3,8 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "options/option_kinds.hpp"
 #include "options/options.hpp"
