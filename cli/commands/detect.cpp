@@ -118,7 +118,7 @@ int run_detect(const DetectOptions& given, Ranks& ranks) {
       if (continuous) objects->remember_positions();
       Frame frame{number, is_start ? objects->detect(request) : objects->step(request)};
       if (frame.result.stopped) break;
-      if (continuous) frame.turned = objects->turned();
+      if (continuous && !is_start) frame.turned = objects->turned();
       if (options.verify && !(is_start && continuous)) frame.verify = objects->verify({interruption.token()});
       if (frame.verify && frame.verify->stopped) break;
       const auto hold = interruption.hold();

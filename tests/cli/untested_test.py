@@ -136,6 +136,8 @@ class Untested(ProgramTest):
         self.assertIn("in 2 steps, first from frame 0 to 1", done.error)
         frames = json.loads((self.folder / "out.json").read_text())["frames"]
         self.assertEqual(frames[0]["untested"], [{"kind": "continuous", "reason": "half_turn", "object": 0}])
+        done = self.run_here("detect", "spin.toml", "--contacts", "intersection,continuous", "--frames", "3")
+        self.assertIn("In 2 steps, first from frame 0 to 1", done.out, "the first frame has no step")
 
 
 class Seams(ProgramTest):
