@@ -50,6 +50,18 @@ TEST(DepthProperties, OfRandomSolids) {
   EXPECT_LE(unsteady, count / 25) << "of " << count;
 }
 
+/// Pairs with faces in the same planes that still overlapped after the move, before points inside both
+/// counted.
+TEST(DepthProperties, OfBodiesWithFlushFaces) {
+  for (const std::uint64_t seed :
+       {2248u, 6308u, 10575u, 11071u, 13651u, 207549u, 227578u, 231342u, 232735u, 252198u}) {
+    RandomNumbers random(seed);
+    const solids::SolidPair pair = solids::random_pair(random);
+    const std::string fault = solids::PairChecker(pair).fault();
+    EXPECT_TRUE(fault.empty() || solids::is_of_directions(fault)) << "seed " << seed << ": " << fault;
+  }
+}
+
 /// Convex bodies in front of and behind a plane, with a vertex, an edge or a face in it.
 TEST(DepthProperties, OfSolidsThatOnlyTouch) {
   std::array<int, 3> curves_of_touching{};  // by the least number of corners in the plane
