@@ -306,9 +306,5 @@ class PairChecker {
 inline bool is_of_directions(const std::string& fault) {
   return fault.find("moved by") != std::string::npos || fault.find("exchanged") != std::string::npos;
 }
-/// Whether the depth is too short. It still is for a few boxes that have divided faces in the same planes.
-inline bool leaves_overlap(const std::string& fault) {
-  return fault.find("still overlap") != std::string::npos;
-}
 
 }  // namespace supple::solids

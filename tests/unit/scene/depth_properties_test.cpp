@@ -30,7 +30,7 @@ TEST(DepthProperties, OfRandomSolids) {
 #endif
   const std::uint64_t first = number_of("SUPPLE_DEPTH_SEED", 1),
                       count = number_of("SUPPLE_DEPTH_PAIRS", pairs);
-  std::uint64_t unsteady = 0, overlapping = 0;
+  std::uint64_t unsteady = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     RandomNumbers random(seed);
     const solids::SolidPair pair = solids::random_pair(random);
@@ -38,15 +38,14 @@ TEST(DepthProperties, OfRandomSolids) {
     if (fault.empty()) continue;
     const std::string text =
         "seed " + std::to_string(seed) + ", " + pair.a.kind + " and " + pair.b.kind + ": " + fault;
-    if (solids::is_of_directions(fault) || solids::leaves_overlap(fault)) {
-      ++(solids::leaves_overlap(fault) ? overlapping : unsteady);
+    if (solids::is_of_directions(fault)) {
+      ++unsteady;
       if (std::getenv("SUPPLE_DEPTH_PAIRS") != nullptr) std::cout << text << '\n';
     } else {
       ADD_FAILURE() << text;
     }
   }
-  // Of 80,000 pairs, no move leaves an overlap, and 2.3 % of the depths are not steady.
-  EXPECT_LE(overlapping, count / 20'000) << "of " << count;
+  // Of 380,000 pairs, 2.3 % have depths that are not steady, and no other fault.
   EXPECT_LE(unsteady, count / 25) << "of " << count;
 }
 
