@@ -224,7 +224,7 @@ class TextReport : public Report {
       return fmt::format("{:>16} {:>24} {:>12} {:>16}", grouped(pair.count), pair.most, pair.frame_of_most,
                          grouped(pair.part));
     });
-    // Of pairs that are equally deep, the report names the one with the most vertices.
+    // When several pairs are equally deep, the report names the one with the most vertices.
     const auto& [pair, deepest] = *std::ranges::max_element(
         pairs, {}, [](const auto& entry) { return std::pair(entry.second.most, entry.second.count); });
     if (deepest.count > 0)
