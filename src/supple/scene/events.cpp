@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <span>
-#include <utility>
 
 #include "core/sort_once.hpp"
 #include "core/timer.hpp"

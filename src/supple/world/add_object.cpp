@@ -1,7 +1,6 @@
 // Adds an object to a world, after checks of all that the user gives.
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "core/error.hpp"

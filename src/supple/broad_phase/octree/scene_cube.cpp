@@ -1,7 +1,6 @@
 #include "broad_phase/octree/scene_cube.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace supple {

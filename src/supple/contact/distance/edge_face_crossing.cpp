@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "contact/intersection/meeting_point.hpp"
 #include "geometry/exact_predicates.hpp"

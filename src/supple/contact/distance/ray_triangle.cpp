@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "geometry/numbers/double_double.hpp"
 #include "geometry/numbers/integer_points.hpp"

@@ -2,9 +2,7 @@
 #include "octree/object_octree.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <limits>
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
