@@ -1,10 +1,7 @@
 #include "supple/broad_phase.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -49,61 +46,6 @@ nb::object find_pairs(BroadPhaseCore& core, std::span<const Volume> volumes,
   return to_own_array<std::uint32_t, 2>(std::move(pairs));
 }
 
-using MutableBoxes = nb::ndarray<float, nb::shape<-1, 2, 3>, nb::c_contig, nb::device::cpu>;
-using Transforms = nb::ndarray<const double, nb::shape<-1, 4, 4>, nb::c_contig, nb::device::cpu>;
-
-/// Writes the boxes of `moved`, rounded outward: that of each center with its half edges, after its
-/// transform. What is not finite has a box at infinity. Returns the first one that has no finite box.
-std::optional<std::uint32_t> place_boxes(const Transforms& transforms, const Matrix<double, 3>& centers,
-                                         const Matrix<double, 3>& halves, const List<std::uint32_t>& moved,
-                                         const MutableBoxes& boxes) {
-  const std::span<Aabb> placed(reinterpret_cast<Aabb*>(boxes.data()), boxes.shape(0));
-  for (const std::uint32_t i : span_of(moved)) {
-    const Vec3d center = rows_of<Vec3d>(centers)[i], half = rows_of<Vec3d>(halves)[i];
-    double reach = 0;
-    bool has_box = true, is_placed = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      reach = std::max(reach, std::fabs(center[axis]) + half[axis]);
-      has_box = has_box && std::isfinite(std::fabs(center[axis]) + half[axis]);
-    }
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Vec3d low{infinity, infinity, infinity}, high = low;
-    for (int axis = 0; axis < 3 && has_box; ++axis) {
-      const double* const row = transforms.data() + 16 * std::size_t{i} + 4 * axis;
-      double middle = row[3], extent = 0, size = 0;
-      for (int k = 0; k < 3; ++k) {
-        middle += row[k] * center[k];
-        extent += std::fabs(row[k]) * half[k];
-        size += std::fabs(row[k]);
-      }
-      // Rounded corners must not hide a pair.
-      extent += 1e-12 * (size * reach + std::fabs(row[3]));
-      low[axis] = middle - extent;
-      high[axis] = middle + extent;
-      is_placed = is_placed && std::isfinite(low[axis]) && std::isfinite(high[axis]);
-    }
-    if (!is_placed) return i;
-    placed[i] = enclosing_box(low, high, 0);
-  }
-  return std::nullopt;
-}
-
-/// The pairs of boxes of two lists that overlap, (k, 2), by comparing all.
-nb::object overlapping_boxes(const Boxes& a, const Boxes& b) {
-  const std::span all_a(reinterpret_cast<const Aabb*>(a.data()), a.shape(0)),
-      all_b(reinterpret_cast<const Aabb*>(b.data()), b.shape(0));
-  std::vector<IndexPair> pairs;
-  for (std::uint32_t i = 0; i < all_a.size(); ++i) {
-    for (std::uint32_t k = 0; k < all_b.size(); ++k) {
-      const auto meet = [&](int axis) {
-        return all_a[i].min[axis] <= all_b[k].max[axis] && all_b[k].min[axis] <= all_a[i].max[axis];
-      };
-      if (meet(0) && meet(1) && meet(2)) pairs.push_back({i, k});
-    }
-  }
-  return to_own_array<std::uint32_t, 2>(std::move(pairs));
-}
-
 }  // namespace
 
 void bind_broad_phase(nb::module_& module) {
@@ -138,8 +80,6 @@ void bind_broad_phase(nb::module_& module) {
           },
           nb::arg(), nb::arg().none(), nb::arg().none())
       .def("stats", [](const BroadPhaseCore& core) { return dict_of(core.broad_phase.stats()); });
-  module.def("place_boxes", &place_boxes);
-  module.def("overlapping_boxes", &overlapping_boxes);
   module.def("enclosing_boxes",
              [](const Matrix<double, 3>& lowest, const Matrix<double, 3>& highest, double radius) {
                if (lowest.shape(0) != highest.shape(0))

@@ -52,6 +52,7 @@ NB_MODULE(_core, module) {
   bind_scene(module);
   bind_elements(module);
   bind_broad_phase(module);
+  bind_placed_boxes(module);
   bind_inspection(module);
   bind_files(module);
   bind_simulation(module);

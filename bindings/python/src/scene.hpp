@@ -123,6 +123,7 @@ void bind_results(nb::module_& module);
 void bind_queries(nb::module_& module, nb::class_<SceneCore>& scene);
 void bind_elements(nb::module_& module);
 void bind_broad_phase(nb::module_& module);
+void bind_placed_boxes(nb::module_& module);
 void bind_inspection(nb::module_& module);
 void bind_simulation(nb::module_& module);
 void bind_files(nb::module_& module);

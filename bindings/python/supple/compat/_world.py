@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from operator import le
 from typing import TYPE_CHECKING, Any, Iterable, TypeAlias
 
 import numpy as np
@@ -30,20 +29,21 @@ class Entry:
         self.mesh, self.transform = mesh, transform
         self.solid = len(mesh.triangles) > 0 and not fault_of_solid(mesh)
         self.is_empty = len(mesh.positions) == 0
-        finite = mesh.positions[np.isfinite(mesh.positions).all(axis=1)]
-        lowest, highest = (finite.min(axis=0), finite.max(axis=0)) if len(finite) else np.full((2, 3), np.inf)
-        with np.errstate(invalid="ignore"):
-            self.center, self.half = 0.5 * lowest + 0.5 * highest, 0.5 * highest - 0.5 * lowest
-        self.half = np.nextafter(self.half, np.inf)
         self.places: Any = None  #: where it is one of several, and which one
         self.number = 0
         self._parts: npt.NDArray[np.uint32] | None = None
 
-    @property
-    def box(self) -> list[list[float]]:
-        """Of the mesh where it is: the lowest and the highest corner."""
-        box: list[list[float]] = self.places.boxes[self.number].tolist()
-        return box
+    def half_box(self) -> tuple[Floats, Floats]:
+        """The center and the half edges of the box of the mesh."""
+        finite = self.mesh.positions[np.isfinite(self.mesh.positions).all(axis=1)].astype(np.float64)
+        lowest, highest = (finite.min(axis=0), finite.max(axis=0)) if len(finite) else np.full((2, 3), np.inf)
+        with np.errstate(invalid="ignore"):
+            return 0.5 * lowest + 0.5 * highest, np.nextafter(0.5 * highest - 0.5 * lowest, np.inf)
+
+    def may_enclose(self, inner: Entry) -> bool:
+        """Whether its box encloses that of another entry."""
+        enclosed: bool = self.places.boxes.encloses(self.number, inner.places.boxes, inner.number)
+        return enclosed
 
     def one_vertex_of_each_part(self) -> npt.NDArray[np.uint32]:
         if self._parts is None:
@@ -52,44 +52,29 @@ class Entry:
 
 
 class Places:
-    """Where entries are: their boxes, rounded outward to float32, and when they changed."""
+    """Where entries are: their boxes, and when they changed."""
 
     def __init__(self, entries: Iterable[Entry] = ()) -> None:
-        self.entries = list(entries)
-        count = len(self.entries)
+        self.entries: list[Entry] = []
         self.structure = self.version = next(_changes)  #: of the list of entries, and of where they are
-        self.boxes, self.changed = np.empty((count, 2, 3), np.float32), np.empty(count, np.int64)
-        self.transforms = np.array([entry.transform for entry in self.entries]).reshape(-1, 4, 4)
-        self.centers = np.array([entry.center for entry in self.entries]).reshape(-1, 3)
-        self.halves = np.array([entry.half for entry in self.entries]).reshape(-1, 3)
-        for i, entry in enumerate(self.entries):
-            entry.places, entry.number = self, i
-        self._moved = set(range(count))
+        self.boxes = _core.PlacedBoxes()
+        self.changed: list[int] = []
+        for entry in entries:
+            self.add(entry)
 
-    def move(self, entry: Entry) -> None:
-        self.transforms[entry.number] = entry.transform
-        self._moved.add(entry.number)
+    def add(self, entry: Entry) -> None:
+        entry.places, entry.number = self, len(self.entries)
+        self.boxes.add(*entry.half_box())
+        self.entries.append(entry)
+        self.changed.append(0)
+        self.structure = next(_changes)
+        self.move(entry, entry.transform)
 
-    def update(self) -> Places:
-        """Computes the boxes of entries that moved."""
-        if not self._moved:
-            return self
-        moved = np.array(sorted(self._moved), np.uint32)
-        unplaced = _core.place_boxes(self.transforms, self.centers, self.halves, moved, self.boxes)
-        if unplaced is not None:
-            name = self.entries[unplaced].mesh.name
-            raise ValueError(f"the transform of {name} is not finite, or moves it too far")
-        self.version = self.changed[moved] = next(_changes)
-        self._moved = set()
-        return self
-
-    def oriented(self) -> tuple[Floats, Floats, Floats]:
-        """Of boxes that turn with the entries: centers (n, 3), half edges and their directions (n, 3, 3)."""
-        turned = self.transforms[:, :3, :3]
-        centers = (turned @ self.centers[:, :, None])[:, :, 0] + self.transforms[:, :3, 3]
-        columns = turned.transpose(0, 2, 1)
-        lengths = np.linalg.norm(columns, axis=2, keepdims=True)
-        return centers, columns * self.halves[:, :, None], columns / np.where(lengths > 0, lengths, 1)
+    def move(self, entry: Entry, transform: Floats) -> None:
+        if not self.boxes.place(entry.number, transform):
+            raise ValueError(f"the transform of {entry.mesh.name} is not finite, or moves it too far")
+        entry.transform = transform
+        self.changed[entry.number] = self.version = next(_changes)
 
 
 #: The distance, the two entries and the record; infinite and None without any.
@@ -132,22 +117,20 @@ class World:
 
     def overlapping(self, *sources: Places) -> list[tuple[Entry, Entry]]:
         """The pairs of entries whose boxes overlap: of one source, or of two sources with each other."""
-        structure = tuple(each.update().structure for each in sources)
+        structure = tuple(each.structure for each in sources)
         version = max(each.version for each in sources)
-        if (structure, version) == self._seen:
-            return self._overlapping
-        first, last = sources[0], sources[-1]
-        if len(sources) == 2 and len(first.entries) * len(last.entries) <= FEW_PAIRS:
-            found = _core.overlapping_boxes(first.boxes, last.boxes).tolist()
-        else:
-            found = self._search(structure, sources)
-        self._seen = structure, version
-        self._overlapping = [(first.entries[i], last.entries[j]) for i, j in found]
+        if (structure, version) != self._seen:
+            first, last = sources[0], sources[-1]
+            is_small = len(sources) == 2 and len(first.entries) * len(last.entries) <= FEW_PAIRS
+            pairs = None if is_small else self._search(structure, sources)
+            found = first.boxes.near(last.boxes, pairs).tolist()
+            self._seen = structure, version
+            self._overlapping = [(first.entries[i], last.entries[j]) for i, j in found]
         return self._overlapping
 
-    def _search(self, structure: Any, sources: tuple[Places, ...]) -> list[list[int]]:
-        """The same by the broad phase, which searches only the pairs of boxes that changed."""
-        volumes, kinds, dirty = np.concatenate([each.boxes for each in sources]), None, None
+    def _search(self, structure: Any, sources: tuple[Places, ...]) -> npt.NDArray[np.uint32]:
+        """The same by the broad phase, along the axes; it searches only the pairs of boxes that changed."""
+        volumes, kinds, dirty = np.concatenate([each.boxes.corners() for each in sources]), None, None
         if len(sources) == 2:
             kinds = np.repeat(np.arange(2, dtype=np.uint8), [len(each.entries) for each in sources])
         if structure == self._seen[0]:
@@ -156,10 +139,10 @@ class World:
         else:
             pairs = {} if kinds is None else {"kind_pairs": [(0, 1)]}
             self._broad_phase = _core.BroadPhase({"threads": 1, **pairs})
-        found = self._broad_phase.of_boxes(volumes, kinds, dirty)
+        found: npt.NDArray[np.uint32] = self._broad_phase.of_boxes(volumes, kinds, dirty)
         if kinds is not None:
             found[:, 1] -= np.uint32(len(sources[0].entries))
-        return found.tolist()
+        return found
 
     def collide(self, pairs: list[tuple[Entry, Entry]], all_pairs: bool) -> list[tuple[Entry, Entry]]:
         """The pairs that touch, or the first one that is found."""
@@ -182,10 +165,8 @@ class World:
         """Whether a part of an entry is inside a solid one that it does not touch."""
         if not outer.solid or inner.is_empty:
             return False
-        (low, high), (inner_low, inner_high) = outer.box, inner.box
-        is_within = all(map(le, low, inner_low)) and all(map(le, inner_high, high))
         vertices = inner.one_vertex_of_each_part()
-        if not is_within and len(vertices) == 1:
+        if len(vertices) == 1 and not outer.may_enclose(inner):
             return False
         points = self.core.positions(self.object(inner)._id)[vertices]
         return bool((self.scene.inside(points, object=self.object(outer)) > 0).any())
@@ -228,28 +209,10 @@ class World:
 
 def near_entries(places: Places, place: Places, external: Entry) -> list[tuple[Entry, Entry]]:
     """The entries whose boxes overlap that of the only one of `place`."""
-    found = _core.overlapping_boxes(places.boxes, place.boxes)
-    return [(places.entries[i], external) for i in found[:, 0].tolist()]
+    return [(places.entries[i], external) for i in places.boxes.near(place.boxes, None)[:, 0].tolist()]
 
 
 def lower_bounds(a: Places, b: Places) -> Floats:
-    """Lower bounds of the distances of all entries of a to those of b: of their boxes along the axes, and of
-    their boxes that turn with them, along the edges of these."""
-    with np.errstate(invalid="ignore", over="ignore"):
-        lows = np.subtract(a.boxes[:, None, 0], b.boxes[None, :, 1], dtype=np.float64)
-        highs = np.subtract(b.boxes[None, :, 0], a.boxes[:, None, 1], dtype=np.float64)
-        bounds: Floats = np.linalg.norm(np.maximum(0, np.maximum(lows, highs)), axis=2)
-        (centers_a, edges_a, axes_a), (centers_b, edges_b, axes_b) = a.oriented(), b.oriented()
-        between = centers_a[:, None] - centers_b[None, :]
-        # More than rounding loses, also of coordinates that are far from 0.
-        slack = 1e-12 * (np.abs(centers_a).sum(axis=1)[:, None] + np.abs(centers_b).sum(axis=1))
-        for axes, own, others, shape in (
-            (axes_a, edges_a, edges_b, "ikc,jlc->ijkl"),
-            (axes_b, edges_b, edges_a, "jkc,ilc->ijkl"),
-        ):
-            gaps = np.abs(np.einsum("ijc,ikc->ijk" if shape[0] == "i" else "ijc,jkc->ijk", between, axes))
-            radii = np.abs(np.einsum("nkc,nlc->nkl", axes, own)).sum(axis=2)
-            gaps -= radii[:, None] if shape[0] == "i" else radii[None, :]
-            gaps -= np.abs(np.einsum(shape, axes, others)).sum(axis=3)
-            bounds = np.fmax(bounds, gaps.max(axis=2) * (1 - 1e-9) - slack)
+    """Lower bounds of the distances of all entries of a to those of b; NaN of entries without vertices."""
+    bounds: Floats = a.boxes.bounds(b.boxes).reshape(len(a.entries), len(b.entries))
     return bounds

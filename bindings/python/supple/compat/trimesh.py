@@ -81,15 +81,19 @@ class CollisionManager:
         self._world = World(Scene(contacts="intersection"))
         self._scene = self._world.scene
         self._places = Places()
-        self._externals: list[Entry] = []
+        self._externals: list[Places] = []
         self._shared: weakref.WeakKeyDictionary[CollisionManager, World] = weakref.WeakKeyDictionary()
 
     def add_object(self, name: str, mesh: Any, transform: Any = None) -> Object:
         """Adds a mesh with a (4, 4) transform; replaces the one with this name."""
         entry = Entry(as_mesh(mesh, name=str(name)), _matrix(transform))
-        added = self._world.object(entry)
+        added, replaced = self._world.object(entry), name in self._entries
         self._entries[name] = entry
-        self._change()
+        if replaced:
+            self._change()
+        else:
+            self._names[id(entry)] = name
+            self._places.add(entry)
         return added
 
     def remove_object(self, name: str) -> None:
@@ -100,9 +104,7 @@ class CollisionManager:
 
     def set_transform(self, name: str, transform: Any) -> None:
         """Replaces the transform of an object."""
-        entry = self._entry(name)
-        entry.transform = _matrix(transform)
-        self._places.move(entry)
+        self._places.move(self._entry(name), _matrix(transform))
 
     def in_collision_single(
         self, mesh: Any, transform: Any = None, return_names: bool = False, return_data: bool = False
@@ -110,8 +112,7 @@ class CollisionManager:
         """Whether a mesh collides with any object; with the names of these objects and the contacts, if
         wanted."""
         external, place = self._external(mesh, transform)
-        places = self._places.update()
-        pairs = near_entries(places, place, external)
+        pairs = near_entries(self._places, place, external)
         names = {**self._names, id(external): _EXTERNAL}
         return self._answer(self._world, pairs, names, lambda a, b: a, return_names, return_data)
 
@@ -137,9 +138,8 @@ class CollisionManager:
         """The smallest distance of a mesh to all objects; with the name of the nearest one and data, if
         wanted."""
         external, place = self._external(mesh, transform)
-        places = self._places.update()
-        found = self._world.first_contact(near_entries(places, place, external)) or self._world.nearest(
-            lower_bounds(places, place), places.entries, [external]
+        found = self._world.first_contact(near_entries(self._places, place, external)) or self._world.nearest(
+            lower_bounds(self._places, place), self._places.entries, [external]
         )
         distance, names, data = self._distance(
             found, self._world, {**self._names, id(external): _EXTERNAL}, return_data
@@ -151,12 +151,11 @@ class CollisionManager:
     ) -> Any:
         """The smallest distance of any two objects, or of one object to all others."""
         own = None if name is None else self._entry(name)
-        places = self._places.update()
-        pairs = self._world.overlapping(places)
+        pairs = self._world.overlapping(self._places)
         if own is not None:
             pairs = [pair for pair in pairs if own in pair]
         found = self._world.first_contact(pairs) or self._world.nearest(
-            self._inner_bounds(places, own), places.entries, places.entries
+            self._inner_bounds(own), self._places.entries, self._places.entries
         )
         distance, names, data = self._distance(found, self._world, self._names, return_data)
         return _answer(
@@ -168,27 +167,28 @@ class CollisionManager:
     ) -> Any:
         """The smallest distance of an object to one of another manager; names are (own, other)."""
         world = self._world_with(other_manager)
-        own, other = self._places.update(), other_manager._places.update()
+        own, other = self._places, other_manager._places
         found = world.first_contact(world.overlapping(own, other))
         found = found or world.nearest(lower_bounds(own, other), own.entries, other.entries)
         names = {**self._names, **other_manager._names}
         return _answer(*self._distance(found, world, names, return_data), return_names, return_data)
 
-    @staticmethod
-    def _inner_bounds(places: Places, own: Entry | None) -> Floats:
+    def _inner_bounds(self, own: Entry | None) -> Floats:
         """Bounds of each pair once; NaN elsewhere."""
-        bounds, count = lower_bounds(places, places), len(places.entries)
+        bounds, count = lower_bounds(self._places, self._places), len(self._entries)
         left_out = np.tri(count, dtype=bool)
         if own is not None:
-            at = places.entries.index(own)
-            left_out = np.arange(count)[:, None] != at
-            bounds[at, at] = np.nan
+            left_out = np.arange(count)[:, None] != own.number
+            bounds[own.number, own.number] = np.nan
         return np.where(left_out, np.nan, bounds)
 
     def _change(self) -> None:
         self._names = {id(entry): name for name, entry in self._entries.items()}
         self._places = Places(self._entries.values())
-        self._world.keep([*self._entries.values(), *self._externals])
+        self._keep()
+
+    def _keep(self) -> None:
+        self._world.keep([*self._entries.values(), *(each.entries[0] for each in self._externals)])
 
     def _entry(self, name: str) -> Entry:
         if name not in self._entries:
@@ -198,13 +198,13 @@ class CollisionManager:
     def _external(self, mesh: Any, transform: Any) -> tuple[Entry, Places]:
         """A mesh of one question, with its octree where it was in one of the last questions."""
         matrix, made = _matrix(transform), as_mesh(mesh, name=_EXTERNAL)
-        known = [each for each in self._externals if _equal(each.mesh, made)]
-        entry = known[0] if known else Entry(made, matrix)
-        entry.transform = matrix
-        self._externals = [entry, *(each for each in self._externals if each is not entry)][:_KEPT_EXTERNALS]
+        known = [each for each in self._externals if _equal(each.entries[0].mesh, made)]
+        place = known[0] if known else Places([Entry(made, matrix)])
+        place.move(place.entries[0], matrix)
+        self._externals = [place, *(each for each in self._externals if each is not place)][:_KEPT_EXTERNALS]
         if not known:
-            self._world.keep([*self._entries.values(), *self._externals])
-        return entry, Places([entry]).update()
+            self._keep()
+        return place.entries[0], place
 
     def _world_with(self, other: CollisionManager) -> World:
         """The scene of what two managers have near each other."""
