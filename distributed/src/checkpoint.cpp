@@ -123,7 +123,10 @@ void DistributedScene::Implementation::save(const std::string& path) {
       row.checksum = checksum_with(row, std::span(data).subspan(first));
     }
     for (std::size_t list = 0; list < pair_lists; ++list) {
-      for (const ObjectPair& pair : events_[list].pairs()) events.push_back({pair, list});
+      const PairEvents last = events_[list].events();
+      for (const auto pairs : {last.begin, last.stay}) {
+        for (const ObjectPair& pair : pairs) events.push_back({pair, list});
+      }
     }
     return CallText("save").add("path", path);
   });

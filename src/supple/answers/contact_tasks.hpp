@@ -29,17 +29,20 @@ struct TaskStats {
   double exact_seconds = 0;  ///< part of `busy_seconds`
 };
 
-/// Splits jobs into tasks that load the workers evenly. Keeps its memory between steps.
+/// Splits jobs into tasks that load the workers evenly. Keeps its memory between steps. Many jobs are one task
+/// each, which takes no memory.
 class ContactTasks {
  public:
-  /// Makes one task for each job. With several workers and few jobs, it splits tasks by descending the first
-  /// levels of the octrees. `view_of_job(job)` returns an `ObjectPairView`.
+  /// Makes one task for each job; the jobs stay where they are. With several workers and few jobs, it splits
+  /// tasks by descending the first levels of the octrees. `view_of_job(job)` returns an `ObjectPairView`.
   template <class ViewOfJob>
   void plan(std::span<const std::uint32_t> jobs, std::size_t worker_count, Traversal& traversal,
             ViewOfJob&& view_of_job) {
+    jobs_ = jobs;
     tasks_.clear();
+    splits_ = worker_count > 1 && jobs.size() < tasks_per_worker * worker_count;
+    if (!splits_) return;
     for (const std::uint32_t job : jobs) tasks_.push_back({job, {}});
-    if (worker_count == 1) return;
     for (int round = 0; round < most_refinements && tasks_.size() < tasks_per_worker * worker_count;
          ++round) {
       finer_tasks_.clear();
@@ -52,15 +55,18 @@ class ContactTasks {
     }
   }
 
+  std::size_t size() const { return splits_ ? tasks_.size() : jobs_.size(); }
   /// Ascending by job.
-  std::span<const ContactTask> tasks() const { return tasks_; }
+  ContactTask operator[](std::size_t task) const {
+    return splits_ ? tasks_[task] : ContactTask{jobs_[task], {}};
+  }
 
   /// Calls `run_task(index of the task, index of the worker)` for all tasks, on all workers, until a stop is
   /// requested. Each worker has a member `TaskStats stats`.
   template <class Worker, class RunTask>
   void run(const Parallel& parallel, std::vector<Worker>& workers, const StopSignal& stop,
            RunTask&& run_task) const {
-    parallel.for_ranges(tasks_.size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+    parallel.for_ranges(size(), 1, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
       Timer busy;
       for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) run_task(i, w);
       workers[w].stats.busy_seconds += busy.lap();
@@ -71,7 +77,9 @@ class ContactTasks {
   static constexpr std::size_t tasks_per_worker = 32;
   static constexpr int most_refinements = 4;
 
-  std::vector<ContactTask> tasks_, finer_tasks_;
+  std::span<const std::uint32_t> jobs_;
+  bool splits_ = false;
+  std::vector<ContactTask> tasks_, finer_tasks_;  // where it splits
   std::vector<NodePair> finer_;
 };
 

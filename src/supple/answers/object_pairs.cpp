@@ -76,11 +76,13 @@ void ObjectPairs::find(const Question& question, std::span<const VertexWays> way
   }
   const std::span<const IndexPair> overlapping = finder_.find_pairs(volumes, world_.parallel);
   pairs_.clear();
+  pairs_.reserve(overlapping.size());
   for (const IndexPair& pair : overlapping) {
     if (!are_apart(pair) && question.may_pair(world_, pair))
       pairs_.push_back({world_.id_of(pair.a), world_.id_of(pair.b)});
   }
   jobs_.clear();
+  jobs_.reserve(pairs_.size());
   auto pair = pairs_.begin();
   for (std::uint32_t slot = 0; slot < world_.slot_count(); ++slot) {
     const WorldObject* const object = world_.at(slot);

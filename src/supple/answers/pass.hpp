@@ -127,7 +127,7 @@ class Pass {
   /// follow each other share them, so that the list is cut where they together find too much.
   Ranges begin_task(std::size_t task, Worker& worker) {
     if (limit_.is_set()) {
-      if (const auto continued = outcomes_.take(tasks_.tasks()[task].job, worker.number)) return *continued;
+      if (const auto continued = outcomes_.take(tasks_[task].job, worker.number)) return *continued;
     }
     Ranges ranges{};
     for (std::size_t list = 0; list < list_count; ++list) ranges[list].first = worker.sizes()[list];
@@ -137,7 +137,7 @@ class Pass {
     Ranges ranges = begun;
     for (std::size_t list = 0; list < list_count; ++list)
       ranges[list].count = worker.sizes()[list] - ranges[list].first;
-    const std::uint32_t job = tasks_.tasks()[task].job;
+    const std::uint32_t job = tasks_[task].job;
     outcomes_.add({job, static_cast<std::uint32_t>(task), worker.number, ranges});
     limit_.add(job, ranges[0].count - std::min(ranges[0].count, begun[0].count));
   }

@@ -56,6 +56,10 @@ void PairSorter::finish(const Parallel& parallel, std::vector<IndexPair>& sorted
   parallel.for_ranges(bin_count, 1, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
     for (std::size_t bin = begin; bin < end; ++bin) sort_bin(bin, counters_[worker], sorted.data());
   });
+  constexpr std::size_t most_kept = std::size_t{1} << 20;
+  if (total <= most_kept) return;
+  std::vector<IndexPair>().swap(binned_);
+  for (PairList& list : lists_) std::vector<IndexPair>().swap(list.pairs_);
 }
 
 /// Sorts by the lower half of b's bits, the upper half, and a. Each pass keeps the order of equal digits, and

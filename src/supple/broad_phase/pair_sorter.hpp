@@ -31,7 +31,7 @@ class PairList {
 };
 
 /// Sorts the pairs of all workers by (a, b): into bins by the upper bits of a, then each bin by digits.
-/// O(pairs + slots).
+/// O(pairs + slots). It keeps its memory for the next search, except that for more than a million pairs.
 class PairSorter {
  public:
   /// One empty list for each worker. Every slot of a pair is less than `slot_count`.

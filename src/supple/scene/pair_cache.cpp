@@ -6,22 +6,33 @@
 namespace supple {
 
 void PairCache::prepare(std::span<const ObjectPair> now) {
-  pairs_.reserve(now.size());
-  begin_.reserve(now.size());
-  stay_.reserve(now.size());
-  end_.reserve(pairs_.size());
+  last_begin_.reserve(now.size());
+  last_stay_.reserve(now.size());
+  end_.reserve(begin_.size() + stay_.size());
 }
 
 void PairCache::update(std::span<const ObjectPair> now) {
   assert(std::is_sorted(now.begin(), now.end()) && std::adjacent_find(now.begin(), now.end()) == now.end());
+  begin_.swap(last_begin_);
+  stay_.swap(last_stay_);
   begin_.clear();
   stay_.clear();
   end_.clear();
-  auto old = pairs_.begin();
+  std::span<const ObjectPair> begun = last_begin_, stayed = last_stay_;
+  const auto has_old = [&] { return !begun.empty() || !stayed.empty(); };
+  const auto list_of_old = [&]() -> std::span<const ObjectPair>& {
+    return stayed.empty() || (!begun.empty() && begun.front() < stayed.front()) ? begun : stayed;
+  };
+  const auto old = [&] { return list_of_old().front(); };
+  const auto take_old = [&] {
+    const ObjectPair pair = old();
+    list_of_old() = list_of_old().subspan(1);
+    return pair;
+  };
   for (const ObjectPair& pair : now) {
-    for (; old != pairs_.end() && *old < pair; ++old) end_.push_back(*old);
-    const bool known = old != pairs_.end() && *old == pair;
-    if (known) ++old;
+    while (has_old() && old() < pair) end_.push_back(take_old());
+    const bool known = has_old() && old() == pair;
+    if (known) take_old();
     if (known && !is_released(pair)) {
       stay_.push_back(pair);
     } else {
@@ -29,8 +40,7 @@ void PairCache::update(std::span<const ObjectPair> now) {
       begin_.push_back(pair);
     }
   }
-  end_.insert(end_.end(), old, pairs_.end());
-  pairs_.assign(now.begin(), now.end());
+  while (has_old()) end_.push_back(take_old());
   released_.clear();
 }
 

@@ -33,14 +33,12 @@ class PairCache {
     visit(stay_);
     visit(end_);
   }
-  /// The pairs of the last `update`.
-  std::span<const ObjectPair> pairs() const { return pairs_; }
 
  private:
   bool is_released(const ObjectPair& pair) const;
 
-  std::vector<ObjectPair> pairs_;
   std::vector<ObjectPair> begin_, stay_, end_;
+  std::vector<ObjectPair> last_begin_, last_stay_;  // of the `update` before: scratch memory
   std::vector<ObjectId> released_;  // since the last update, ascending
 };
 

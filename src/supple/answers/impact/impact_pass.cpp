@@ -170,12 +170,12 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
 }
 
 void ImpactPass::run_task(std::size_t task, Worker& worker) {
-  const std::uint32_t job = tasks_.tasks()[task].job;
+  const std::uint32_t job = tasks_[task].job;
   const Ranges ranges = begin_task(task, worker);
   if (limit_.excludes(ContactLimit::place(job, 0))) return end_task(task, ranges, worker);
   const std::size_t first = ranges[0].first;
   worker.keep_first_at = least_to_keep_first;
-  worker.traversal.find_element_pairs(view_of_job(job), tasks_.tasks()[task].root, worker.stats.traversal,
+  worker.traversal.find_element_pairs(view_of_job(job), tasks_[task].root, worker.stats.traversal,
                                       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
                                         Timer timer;
                                         test_candidates(job, kind, candidates, worker);

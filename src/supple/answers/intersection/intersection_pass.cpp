@@ -76,7 +76,7 @@ ObjectPairView IntersectionPass::view_of_job(std::uint32_t job) const {
 }
 
 void IntersectionPass::run_task(std::size_t task, Worker& worker) {
-  const std::uint32_t job = tasks_.tasks()[task].job;
+  const std::uint32_t job = tasks_[task].job;
   const Ranges ranges = begin_task(task, worker);
   if (limit_.excludes(ContactLimit::place(job, 0))) return end_task(task, ranges, worker);
   const TaskInput input = input_of_job(job);
@@ -97,7 +97,7 @@ void IntersectionPass::run_task(std::size_t task, Worker& worker) {
     test(candidates);
     worker.stats.exact_seconds += timer.lap();
   };
-  worker.traversal.find_triangle_pairs(input.pair, tasks_.tasks()[task].root, worker.stats.traversal,
+  worker.traversal.find_triangle_pairs(input.pair, tasks_[task].root, worker.stats.traversal,
                                        on_leaves, on_candidates);
   Timer timer;
   if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr)
@@ -127,13 +127,11 @@ template <class Test>
 void IntersectionPass::for_neighbours(const TaskInput& input, std::size_t task, Worker& worker,
                                       const Test& test) const {
   constexpr std::size_t most_waiting = 4096;
-  const std::span<const ContactTask> tasks = tasks_.tasks();
-  const auto [first_task, last_task] =
-      std::equal_range(tasks.begin(), tasks.end(), tasks[task],
-                       [](const ContactTask& p, const ContactTask& q) { return p.job < q.job; });
+  std::size_t first_task = task, last_task = task + 1;
+  while (first_task > 0 && tasks_[first_task - 1].job == input.job) --first_task;
+  while (last_task < tasks_.size() && tasks_[last_task].job == input.job) ++last_task;
   const std::size_t count = input.object_a.vertex_count;
-  const auto parts = static_cast<std::size_t>(last_task - first_task);
-  const std::size_t part = task - static_cast<std::size_t>(first_task - tasks.begin());
+  const std::size_t parts = last_task - first_task, part = task - first_task;
   const auto corners = input.pair.a.arrays.triangles;
   worker.neighbours.clear();
   const auto pass_on = [&] {

@@ -109,10 +109,10 @@ ObjectPairView ProximityPass::view_of_job(std::uint32_t job) const {
 }
 
 void ProximityPass::run_task(std::size_t task, Worker& worker) {
-  const std::uint32_t job = tasks_.tasks()[task].job;
+  const std::uint32_t job = tasks_[task].job;
   if (worker.is_full && worker.last.job < job) return;
   worker.traversal.find_element_pairs(
-      view_of_job(job), tasks_.tasks()[task].root, worker.stats.traversal,
+      view_of_job(job), tasks_[task].root, worker.stats.traversal,
       [&](ElementPairKind kind, std::span<const ElementPair> candidates) {
         Timer timer;
         test_candidates(job, kind, candidates, worker);
