@@ -35,13 +35,13 @@ LIBS = {"files": [], "describe": [], "verify": [], "inspect": [], "comparison": 
 COMPONENTS = {"models": "mesh", "simulation": "mesh", "formats": "mesh", "recording": None, "distributed": "scene"}
 # Components that include internal headers of libraries in libs/.
 LIBS_OF_COMPONENTS = {"formats": ["files"], "distributed": ["verify"]}
-PROGRAMS = ["viewer/session", "viewer/export", "viewer/view_file", "viewer/server", "viewer/attach", "cli", "experiments", "examples", "benchmarks"]
+PROGRAMS = ["viewer/session", "viewer/export", "viewer/view_file", "viewer/server", "viewer/attach", "cli", "distributed/program", "experiments", "examples", "benchmarks"]
 # Folders of small programs that do not depend on each other.
 LISTS = ["examples"]
 # Folders of the viewer that others may include although they are not public: "session/scene_view.hpp".
-SHARED = {"viewer/server": ["session"], "viewer/view_file": ["session", "export"], "viewer/attach": ["session", "export", "view_file", "server"], "cli": ["session", "export", "view_file", "server"], "experiments": ["session"]}
+SHARED = {"viewer/server": ["session"], "viewer/view_file": ["session", "export"], "viewer/attach": ["session", "export", "view_file", "server"], "cli": ["session", "export", "view_file", "server"], "experiments": ["session"], "distributed/program": ["session"]}
 # Programs that are built on the parts of another one; a benchmark divides space as a distributed scene does.
-BUILT_ON = {"experiments": "cli", "benchmarks": "distributed/src"}
+BUILT_ON = {"experiments": "cli", "distributed/program": "cli", "benchmarks": "distributed/src"}
 PUBLIC = ["include", "viewer/include"] + [f"libs/{name}/include" for name in LIBS] + [f"{name}/include" for name in COMPONENTS]
 SOURCES = {".cpp", ".hpp", ".h", ".cc"}
 STANDARD = {
@@ -112,7 +112,7 @@ def problem_in_public_header(root, folder, bracket, name):
 def problem_in_program(root, folder, path, bracket, name):
     if bracket == "<" or is_public(root, name):
         return None
-    own = (path.parent, folder, root / BUILT_ON.get(folder.name, folder))
+    own = (path.parent, folder, root / BUILT_ON.get(folder.relative_to(root).as_posix(), folder))
     if any((base / name).is_file() for base in own) and ".." not in name:
         return None
     if name.split("/")[0] in SHARED.get(folder.relative_to(root).as_posix(), []) and (root / "viewer" / name).is_file():

@@ -52,7 +52,7 @@ def read_headers(build):
     for line in lines_of("ninja", "-C", build, "-t", "deps"):
         path = line.strip()
         if not line.startswith(" "):
-            is_of_program = not line.startswith(("tests/", "fuzz/", "examples/", "benchmarks/", "distributed/", "cli/CMakeFiles/supple_mpi.dir/",
+            is_of_program = not line.startswith(("tests/", "fuzz/", "examples/", "benchmarks/", "distributed/",
                                                  "bindings/python/CMakeFiles/supple_python_distributed.dir/"))
         elif is_of_program and path.startswith("/usr/"):
             headers.setdefault(str(pathlib.PurePath(path).parent), path)

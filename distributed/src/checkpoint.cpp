@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <numeric>
 #include <string>
 
 #include "core/error.hpp"

@@ -2,7 +2,6 @@
 
 #include <zoltan.h>
 
-#include <algorithm>
 
 #include "core/error.hpp"
 

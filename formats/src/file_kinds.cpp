@@ -5,7 +5,6 @@
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
-#include <span>
 
 #include "core/error.hpp"
 #include "core/quotes.hpp"

@@ -3,8 +3,6 @@
 // build place objects.
 
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <map>
 #include <utility>
 #include <vector>

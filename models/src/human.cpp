@@ -1,4 +1,3 @@
-#include <utility>
 
 #include "built_in.hpp"
 #include "implicit_surface.hpp"

@@ -1,11 +1,9 @@
 #include "remesh.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <queue>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 namespace supple::models {

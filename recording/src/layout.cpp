@@ -1,7 +1,6 @@
 #include "layout.hpp"
 
 #include <span>
-#include <utility>
 
 namespace supple {
 namespace {

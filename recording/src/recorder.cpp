@@ -12,7 +12,6 @@
 #include <optional>
 #include <set>
 #include <system_error>
-#include <utility>
 
 #include "datasets.hpp"
 #include "hdf5/commit_driver.hpp"

@@ -5,9 +5,7 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 #include "supple/error.hpp"
 #include "supple/views.hpp"

@@ -1,7 +1,6 @@
 #include "supple/animation.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include "animation/animated_model.hpp"
 #include "animation/model_readers.hpp"

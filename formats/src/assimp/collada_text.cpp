@@ -1,6 +1,5 @@
 #include "assimp/collada_text.hpp"
 
-#include <algorithm>
 #include <map>
 #include <sstream>
 #include <vector>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>

@@ -2,7 +2,6 @@
 // list of keywords, each with a number of entries.
 
 #include <array>
-#include <limits>
 #include <optional>
 
 #include "core/error.hpp"

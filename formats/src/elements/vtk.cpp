@@ -1,8 +1,6 @@
 // VTK's legacy files (https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html): lines of
 // keywords, followed by numbers as text or in big-endian binary.
 
-#include <algorithm>
-#include <array>
 #include <optional>
 #include <vector>
 

@@ -3,10 +3,7 @@
 
 #include <zlib.h>
 
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <utility>
 #include <vector>
 
 #include "base64.hpp"

@@ -1,9 +1,7 @@
 #include "simulation/rigid_body.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "geometry/point_bounds.hpp"
 #include "geometry/vector.hpp"

@@ -1,7 +1,6 @@
 #include "queries/queries.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "geometry/vector.hpp"

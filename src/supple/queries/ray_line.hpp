@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "supple/queries.hpp"
 
 namespace supple {

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "answers/detection.hpp"
 #include "answers/impact/step_search.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "supple/contact.hpp"
 #include "supple/description.hpp"
 #include "supple/manifold.hpp"

@@ -1,7 +1,6 @@
 #include "motion/implicit/step_equations.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "motion/element_forces.hpp"
 #include "motion/implicit/vector_sums.hpp"

@@ -1,7 +1,6 @@
 #include "answers/penetration/curve_side.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 namespace supple {
 
 /// high + low with |low| at most half a unit in the last place of high: about 106 bits. Sums and products

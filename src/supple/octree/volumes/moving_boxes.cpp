@@ -1,8 +1,6 @@
 #include "octree/volumes/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
 
-#include <algorithm>
-#include <cmath>
 
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"

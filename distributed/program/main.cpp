@@ -9,7 +9,7 @@
 #include "base/run_program.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
-#include "mpi/mpi_ranks.hpp"
+#include "mpi_ranks.hpp"
 
 namespace supple::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "mpi/mpi_ranks.hpp"
+#include "mpi_ranks.hpp"
 
 #include <fmt/core.h>
 

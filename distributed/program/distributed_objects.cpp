@@ -16,7 +16,7 @@
 #include "commands/build_simulation.hpp"
 #include "inputs/inputs.hpp"
 #include "moving/moving_objects.hpp"
-#include "mpi/mpi_ranks.hpp"
+#include "mpi_ranks.hpp"
 #include "session/messages/long_steps.hpp"
 #include "supple/distributed.hpp"
 #include "supple/error.hpp"
