@@ -39,6 +39,9 @@ std::vector<Method> all_methods() {
   }
   for (const BroadPhaseMethod broad_phase : {BroadPhaseMethod::sweep, BroadPhaseMethod::brute})
     methods.push_back({std::string("the broad phase ") + word_of(broad_phase), {.broad_phase = broad_phase}});
+  methods.push_back({"the descent one_side_first", {.comparison = {.descent = Descent::one_side_first}}});
+  methods.push_back({"the lazy refit", {.comparison = {.lazy_refit = true}}});
+  methods.push_back({"the list of colliding vertices", {.comparison = {.colliding_vertices = true}}});
   return methods;
 }
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/point_bounds.hpp"
 #include "geometry/vector.hpp"
+#include "simulation/point_bounds.hpp"
 #include "supple/trigonometry.hpp"
 
 namespace supple {

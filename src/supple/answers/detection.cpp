@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/timer.hpp"
+#include "octree/comparison_methods.hpp"
 #include "queries/queries.hpp"
 
 namespace supple {
@@ -23,7 +24,8 @@ bool Detection::run(const Question& question, std::uint64_t max_contacts, const 
   stats.broad_phase_seconds = stage.lap();
   if (stop.stop_requested()) return false;
   if (question_.shapes().lazy) {
-    stats.triangles_refitted += world_.refit_where_objects_meet(pairs_.jobs());
+    stats.triangles_refitted +=
+        comparison_methods({}).refit_where_objects_meet(world_, pairs_.jobs(), node_pairs_, children_);
     stats.refit_seconds += stage.lap();
   }
   const World::Work rebuilt = world_.rebuild_degraded(pairs_.jobs(), pairs_.boxes());

@@ -9,6 +9,7 @@
 
 #include "contact/intersection/neighbour_test.hpp"
 #include "contact/intersection/triangle_intersection.hpp"
+#include "octree/comparison_methods.hpp"
 
 namespace supple {
 
@@ -309,45 +310,13 @@ void IntersectionPass::gather_found(std::size_t outcome, Worker& worker, const P
 }
 
 void IntersectionPass::gather_colliding_vertices() {
-  vertex_groups_.clear();
-  vertices_.clear();
+  colliding_.groups.clear();
+  colliding_.vertices.clear();
   if (!search_.colliding_vertices) return;
-  leaves_.clear();
+  colliding_.leaves.clear();
   for (const Worker& worker : workers_)
-    leaves_.insert(leaves_.end(), worker.leaves.begin(), worker.leaves.end());
-  // The result is a set of vertices, so the order of leaves within a job does not matter.
-  std::sort(leaves_.begin(), leaves_.end(),
-            [](const CollidingLeaves& p, const CollidingLeaves& q) { return p.job < q.job; });
-  for (auto first = leaves_.begin(); first != leaves_.end();) {
-    const std::uint32_t job = first->job;
-    const auto last =
-        std::find_if(first, leaves_.end(), [&](const auto& leaves) { return leaves.job != job; });
-    const ContactJob pair = jobs_[job];
-    CollidingVertices group{objects_[pair.a].id, objects_[pair.b].id,
-                            static_cast<std::uint32_t>(vertices_.size()), 0, 0};
-    append_marked_vertices(pair.a, {first, last}, false);
-    group.count_a = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex;
-    append_marked_vertices(pair.b, {first, last}, true);
-    group.count_b = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex - group.count_a;
-    vertex_groups_.push_back(group);
-    first = last;
-  }
-}
-
-void IntersectionPass::append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves,
-                                              bool side_b) {
-  const IntersectedObject& owner = objects_[object];
-  marked_.assign(owner.vertex_count, 0);
-  for (const CollidingLeaves& pair : leaves) {
-    const std::uint32_t begin = side_b ? pair.leaves.begin_b : pair.leaves.begin_a;
-    const std::uint32_t end = side_b ? pair.leaves.end_b : pair.leaves.end_a;
-    for (std::uint32_t t = begin; t < end; ++t) {
-      for (const std::uint32_t vertex : owner.view.arrays.triangles[t]) marked_[vertex] = 1;
-    }
-  }
-  for (std::uint32_t vertex = 0; vertex < marked_.size(); ++vertex) {
-    if (marked_[vertex] != 0) vertices_.push_back(vertex);
-  }
+    colliding_.leaves.insert(colliding_.leaves.end(), worker.leaves.begin(), worker.leaves.end());
+  comparison_methods({}).list_colliding_vertices(jobs_, objects_, colliding_);
 }
 
 }  // namespace supple

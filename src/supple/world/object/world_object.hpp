@@ -26,7 +26,8 @@ namespace supple {
 struct SearchedShapes {
   bool resting = false, moving = false;
   bool near = false;  ///< elements at the end of the step
-  /// Only the volumes of the objects, for the resting shape; `World::refit_where_objects_meet` follows.
+  /// Only the volumes of the objects, for the resting shape; `ComparisonMethods::refit_where_objects_meet`
+  /// follows.
   bool lazy = false;
   /// Self-collision culling, for objects that are tested against themselves.
   bool cull_resting = false, cull_moving = false;
