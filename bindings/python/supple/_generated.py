@@ -780,7 +780,7 @@ CONTRACTS = {
     'use_comparison_methods':
         'Lets this process use the methods that only serve comparisons with the defaults: `SceneOptions.bounding_volume` other than `aabb`, `ObjectOctreeOptions.build` other than `balanced`, `BroadPhaseMethod.sweep` and `brute`, `Descent.one_side_first`, `colliding_vertices` and `lazy_refit`. Without this call, `Scene`, `Scene.add` and `BroadPhase` throw `Error` for these options. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
     'use_manifolds':
-        'Lets the scenes of this process make manifolds: `SceneOptions.manifolds` and `DetectRequest.manifolds`. Without this call, `Scene.detect` throws `Error` for them. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
+        'Lets the scenes of this process find curves and make manifolds: `curves` and `manifolds` of `SceneOptions` and of `DetectRequest`. Without this call, `Scene.detect` and `Scene.search` throw `Error` for them. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
     'valid_utf8':
         'Replaces every byte that is not part of valid UTF-8 by U+FFFD, because names of files, and names in files, may be any bytes.',
     'value_of_set':

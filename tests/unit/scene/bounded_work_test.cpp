@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "answers/penetration/curve_finder.hpp"
 #include "core/parallel.hpp"
+#include "manifold/curves/curve_finder.hpp"
 #include "queries/object_queries.hpp"
 #include "queries/pairs/nearest_pair.hpp"
 #include "supple/models.hpp"

@@ -38,6 +38,9 @@ bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObje
   objects_ = objects;
   list_pairs(input.jobs);
   workers_.resize(input.parallel.worker_count());
+  for (Worker& worker : workers_) {
+    if (curves && !worker.curve_maker) worker.curve_maker = manifold_methods("curves").curve_maker();
+  }
   outcomes_.plan(pairs_, input.versions, std::exchange(with_curves_, curves) == curves, workers_.size());
   const std::span<const std::uint32_t> open = outcomes_.open_jobs();
   for (Worker& worker : workers_) std::apply([](auto&... list) { (list.clear(), ...); }, worker.found.all());
@@ -85,7 +88,7 @@ void PenetrationPass::run_task(const Task& task, const DetectResult& result, Wor
   const PenetratedObject &inner = objects_[task.inner], &outer = objects_[task.outer];
   if (task.inner != task.outer && outer.is_solid) find_inside(task, result, worker);
   if (with_curves_ && task.inner <= task.outer && task.group != nullptr)
-    worker.curve_finder.find({inner.surface, outer.surface, &inner.queried, &outer.queried, inner.is_solid,
+    worker.curve_maker->find({inner.surface, outer.surface, &inner.queried, &outer.queried, inner.is_solid,
                               outer.is_solid, task.inner == task.outer, task.group, &result},
                              worker.found.curves);
 }

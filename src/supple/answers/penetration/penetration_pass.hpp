@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <vector>
 
 #include "answers/pass.hpp"
-#include "answers/penetration/curve_finder.hpp"
+#include "answers/penetration/manifold_methods.hpp"
+#include "answers/penetration/parity_sets.hpp"
 #include "answers/penetration/surface_view.hpp"
 #include "contact/distance/distance_batch.hpp"
 #include "core/parallel.hpp"
@@ -92,7 +94,7 @@ class PenetrationPass {
   };
   using Outcomes = JobOutcomes<list_count>;
   struct Worker {
-    CurveFinder curve_finder;
+    std::unique_ptr<CurveMaker> curve_maker;  // where curves were asked for
     ObjectQueries queries;
     DistanceBatch distances;
     PenetrationLists found;

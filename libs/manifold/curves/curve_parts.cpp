@@ -1,4 +1,4 @@
-#include "answers/penetration/curve_parts.hpp"
+#include "manifold/curves/curve_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "answers/penetration/way_out.hpp"
+#include "manifold/curves/way_out.hpp"
 
 #include <algorithm>
 #include <cmath>

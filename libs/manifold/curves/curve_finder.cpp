@@ -1,4 +1,4 @@
-#include "answers/penetration/curve_finder.hpp"
+#include "manifold/curves/curve_finder.hpp"
 
 #include <algorithm>
 #include <cmath>

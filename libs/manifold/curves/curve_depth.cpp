@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "answers/penetration/curve_finder.hpp"
+#include "manifold/curves/curve_finder.hpp"
 
 namespace supple {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "answers/penetration/curve_parts.hpp"
 #include "answers/penetration/surface_view.hpp"
+#include "manifold/curves/curve_parts.hpp"
 #include "queries/object_queries.hpp"
 
 namespace supple {
