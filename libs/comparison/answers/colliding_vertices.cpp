@@ -10,7 +10,7 @@ namespace {
 
 void append_marked_vertices(const IntersectedObject& owner, std::span<const CollidingLeaves> leaves,
                             bool side_b, CollidingVertexLists& lists) {
-  lists.marked.assign(owner.vertex_count, 0);
+  lists.marked.assign(owner.octree->vertex_count(), 0);
   for (const CollidingLeaves& pair : leaves) {
     const std::uint32_t begin = side_b ? pair.leaves.begin_b : pair.leaves.begin_a;
     const std::uint32_t end = side_b ? pair.leaves.end_b : pair.leaves.end_a;

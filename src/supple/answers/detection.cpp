@@ -52,12 +52,9 @@ bool Detection::find_contacts(const PassInput& input, StepStats& stats) {
     for (const std::uint32_t slot : {a, b}) {
       if (std::exchange(is_listed_[slot], std::uint8_t{1}) != 0) continue;
       WorldObject& object = world_[slot];
-      intersected_objects_[slot] = {world_.id_of(slot),
-                                    object.resting_view(),
-                                    object.octree().triangle_ids(),
-                                    object.octree().vertex_count(),
+      intersected_objects_[slot] = {world_.id_of(slot), object.resting_view(), &object.octree(),
                                     object.vertex_groups(),
-                                    object.neighbours()};
+                                    object.tests_neighbours() ? &object.vertex_triangles() : nullptr};
     }
   }
   const IntersectionSearch search{question_.has_intersections(),

@@ -116,8 +116,8 @@ IntersectionPass::TaskInput IntersectionPass::input_of_job(std::uint32_t job) co
           pair,
           {pair.a.arrays, pair.a.translation},
           {pair.b.arrays, pair.b.translation},
-          objects_[a].triangle_ids,
-          objects_[b].triangle_ids,
+          objects_[a].octree->triangle_ids(),
+          objects_[b].octree->triangle_ids(),
           objects_[a],
           objects_[b]};
 }
@@ -132,10 +132,10 @@ void IntersectionPass::for_neighbours(const TaskInput& input, std::size_t task, 
   const auto [first_task, last_task] =
       std::equal_range(tasks.begin(), tasks.end(), tasks[task],
                        [](const ContactTask& p, const ContactTask& q) { return p.job < q.job; });
-  const std::size_t count = input.object_a.vertex_count;
+  const ObjectOctree& octree = *input.object_a.octree;
+  const std::size_t count = octree.vertex_count();
   const auto parts = static_cast<std::size_t>(last_task - first_task);
   const std::size_t part = task - static_cast<std::size_t>(first_task - tasks.begin());
-  const auto corners = input.pair.a.arrays.triangles;
   worker.neighbours.clear();
   const auto pass_on = [&] {
     test(worker.neighbours);
@@ -146,10 +146,11 @@ void IntersectionPass::for_neighbours(const TaskInput& input, std::size_t task, 
         input.object_a.neighbours->around(static_cast<std::uint32_t>(v));
     for (std::size_t i = 0; i < around.size(); ++i) {
       for (std::size_t k = i + 1; k < around.size(); ++k) {
-        const Triangle &p = corners[around[i]], &q = corners[around[k]];
+        const TrianglePair pair{octree.octree_triangle(around[i]), octree.octree_triangle(around[k])};
+        const Triangle &p = octree.triangles()[pair.a], &q = octree.triangles()[pair.b];
         if (smallest_common_vertex(p, q) != v) continue;
-        if (meet_elsewhere(p, points_of(input.pair.a, around[i]), q, points_of(input.pair.a, around[k])))
-          worker.neighbours.push_back({around[i], around[k]});
+        if (meet_elsewhere(p, points_of(input.pair.a, pair.a), q, points_of(input.pair.a, pair.b)))
+          worker.neighbours.push_back(pair);
       }
       if (worker.neighbours.size() >= most_waiting) pass_on();
     }

@@ -13,6 +13,7 @@
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "mesh/vertex_triangles.hpp"
+#include "octree/object_octree.hpp"
 #include "supple/contact.hpp"
 #include "supple/result.hpp"
 #include "world/object/vertex_groups.hpp"
@@ -23,10 +24,9 @@ namespace supple {
 struct IntersectedObject {
   ObjectId id;
   OctreeView view;
-  std::span<const std::uint32_t> triangle_ids;  ///< the user's id of each triangle in octree order
-  std::size_t vertex_count = 0;
+  const ObjectOctree* octree = nullptr;
   VertexGroups groups;
-  /// The triangles around each vertex, in octree order, if triangles that share one are tested; else null.
+  /// The triangles around each vertex, if triangles that share one are tested; else null.
   const VertexTriangles* neighbours = nullptr;
 };
 
