@@ -10,11 +10,9 @@
 namespace supple {
 namespace {
 
+/// Without negative zeros.
 Vec3d unit_or_zero(const Vec3d& v) {
-  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  if (!(largest > 0 && std::isfinite(largest))) return {};
-  const Vec3d scaled{v.x / largest, v.y / largest, v.z / largest};
-  return (1 / std::sqrt(dot(scaled, scaled))) * scaled + Vec3d{};
+  return normalized(v) + Vec3d{};
 }
 
 }  // namespace

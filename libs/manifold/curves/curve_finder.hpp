@@ -25,15 +25,6 @@ inline double scale_of(double largest) {
   return std::ldexp(1.0, -std::clamp(largest > 0 ? std::ilogb(largest) : 0, -1000, 1023));
 }
 
-/// The value before scaling, at most the largest double.
-inline double restored(double scaled, double scale) {
-  constexpr double most = std::numeric_limits<double>::max();
-  return std::clamp(scaled / scale, -most, most);
-}
-inline Vec3d restored(const Vec3d& scaled, double scale) {
-  return {restored(scaled.x, scale), restored(scaled.y, scale), restored(scaled.z, scale)};
-}
-
 /// Links contacts to curves. Holds the memory of one worker.
 class CurveFinder : public CurveMaker {
  public:
