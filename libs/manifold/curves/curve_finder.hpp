@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "answers/penetration/manifold_methods.hpp"
-#include "answers/penetration/parity_sets.hpp"
 #include "manifold/curves/contact_regions.hpp"
 #include "manifold/curves/curve_side.hpp"
+#include "manifold/curves/parity_sets.hpp"
 #include "manifold/curves/way_out.hpp"
 #include "queries/feature_name.hpp"
 #include "supple/penetration.hpp"
@@ -64,7 +64,7 @@ class CurveFinder : public CurveMaker {
   void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
 
-  const SurfaceView& surface_of(std::size_t side) const { return side == 0 ? input_.a : input_.b; }
+  const SurfaceView& surface_of(std::size_t side) const { return (side == 0 ? input_.a : input_.b)->surface; }
   const Contact& contact(std::uint32_t i) const { return contacts_[i]; }
   std::uint32_t first_place(std::uint32_t i) const {
     return contacts_[i].first_point - contacts_[0].first_point;

@@ -29,14 +29,20 @@ struct CurveLists {
   }
 };
 
+/// The data of an object that penetrations and curves read.
+struct PenetratedObject {
+  QueriedObject queried;
+  SurfaceView surface;
+  bool is_solid = false;
+};
+
 /// The contacts of two objects, or of one object with itself.
 struct CurveInput {
-  SurfaceView a, b;
-  const QueriedObject *queried_a = nullptr, *queried_b = nullptr;
-  bool a_is_solid = false, b_is_solid = false;
-  bool same_object = false;
+  const PenetratedObject *a = nullptr, *b = nullptr;
   const ContactGroup* group = nullptr;
   const DetectResult* result = nullptr;  ///< with the contacts of the group, and their points
+
+  bool same_object() const { return a == b; }
 };
 
 /// Links contacts to curves; see `IntersectionCurve`.
