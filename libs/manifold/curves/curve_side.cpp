@@ -1,7 +1,6 @@
 #include "manifold/curves/curve_side.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 

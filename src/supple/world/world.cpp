@@ -1,6 +1,5 @@
 #include "world/world.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "answers/penetration/penetration_pass.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 #include <type_traits>
