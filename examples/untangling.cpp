@@ -5,8 +5,10 @@
 
 #include "supple/models.hpp"
 #include "supple/supple.hpp"
+#include "supple/use_manifolds.hpp"
 
 int main() {
+  supple::use_manifolds();  // the curves are in supple::manifold
   supple::TriangleMesh cloth = supple::make_cloth(40, 40, 2, 2);
   supple::TriangleMesh ball = supple::make_icosphere(12);
   for (supple::Vec3d& p : ball.positions) p = 0.5 * p + supple::Vec3d{0.013, 0.35, 0.017};

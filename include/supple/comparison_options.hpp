@@ -67,7 +67,7 @@ enum class Descent : std::uint8_t {
   both_sides,  ///< all children of one node with all of the other, with vector instructions
   /// As in the paper's Figure 4: the children of the first node with the second node, then those that collide
   /// with the children of the second node. `StepStats::boxes_tested` counts these tests. For contacts at
-  /// rest; it is slower.
+  /// rest; it is slower and needs `use_comparison_methods`.
   one_side_first,
 };
 
@@ -119,14 +119,15 @@ struct ComparisonOptions {
   /// How spheres are fitted to nodes, when the bounding volume is the sphere.
   SphereFit sphere_fit = SphereFit::vertices;
   /// Also report the paper's output: the vertices in the colliding leaves of both octrees
-  /// (`DetectResult::colliding_vertices`). None are reported when continuous contacts are the only kind.
+  /// (`DetectResult::colliding_vertices`). None are reported when continuous contacts are the only kind. It
+  /// needs `use_comparison_methods`.
   bool colliding_vertices = false;
   Descent descent = Descent::both_sides;
   /// Refit in each step only the volume of each object, and the nodes below where two objects may collide, as
   /// in the paper (section 6). The contacts are the same. For intersections and for no contacts, with boxes
   /// or spheres: other kinds, objects that are tested against themselves, and those with edges or points of
   /// no triangle or vertices that are not finite refit all. Octrees are not rebuilt. One thread refits the
-  /// nodes.
+  /// nodes. It needs `use_comparison_methods`.
   bool lazy_refit = false;
 };
 

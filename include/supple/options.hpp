@@ -183,7 +183,7 @@ struct SceneOptions {
   /// For penetration: also the curves in which surfaces intersect, each with what it encloses, a normal and a
   /// depth; see `IntersectionCurve`. Takes time in proportion to the contacts and the vertices behind them,
   /// so leave it out where depths of vertices suffice. Manifolds of penetration are made from curves:
-  /// `manifolds` includes them. A request with this option and without penetration is an error.
+  /// `manifolds` includes them. They need `use_manifolds`. A request with it and no penetration is an error.
   bool curves = false;
   /// Worker threads; 0 means one for each core. Fewer work when the system refuses to create them
   /// (supple/threads.hpp). The results are the same for any number.

@@ -26,7 +26,10 @@ std::unique_ptr<PairSearch> make_pair_search(BroadPhaseMethod method) {
 }  // namespace
 
 void use_comparison_methods() {
-  static constexpr ComparisonMethods methods{make_node_volumes, build_other_octree, make_pair_search};
+  static constexpr ComparisonMethods methods{make_node_volumes,         build_other_octree,
+                                             make_pair_search,          mask_one_side_first,
+                                             list_colliding_vertices,   LazyRefit::refit_object,
+                                             LazyRefit::refit_children, LazyRefit::refit_where_objects_meet};
   set_comparison_methods(methods);
 }
 

@@ -3,16 +3,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "answers/intersection/intersection_pass.hpp"
 #include "broad_phase/overlap_kernel.hpp"
 #include "broad_phase/pair_search.hpp"
+#include "narrow_phase/traversal.hpp"
+#include "octree/object_octree.hpp"
 #include "octree/octree_topology.hpp"
 #include "octree/volumes/node_volumes.hpp"
 #include "supple/mesh.hpp"
 #include "supple/options.hpp"
 #include "supple/views.hpp"
+#include "world/world.hpp"
 
 namespace supple {
 
@@ -69,6 +74,21 @@ class SweepSearch final : public PairSearch {
   BoxLanes lanes_;
   std::vector<std::uint64_t> order_;  // `order_key` of the boxes that are not empty
   PairSorter sorter_;
+};
+
+/// See `ComparisonMethods`.
+std::uint64_t mask_one_side_first(const ObjectPairView& pair, const NodePair& nodes, std::uint64_t& tests);
+void list_colliding_vertices(std::span<const ContactJob> jobs, std::span<const IntersectedObject> objects,
+                             CollidingVertexLists& lists);
+
+/// The paper's section 6; see `ComparisonMethods`.
+struct LazyRefit {
+  static bool refit_object(ObjectOctree& octree, const VertexBuffer& vertices,
+                           const std::optional<Aabb>& box);
+  static std::size_t refit_children(ObjectOctree& octree, std::uint32_t node, const VertexBuffer& vertices);
+  static std::uint64_t refit_where_objects_meet(const World& world, std::span<const ContactJob> jobs,
+                                                std::vector<NodePair>& node_pairs,
+                                                std::vector<ChildPair>& children);
 };
 
 }  // namespace supple

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <tuple>
 #include <utility>
 
 #include <hwy/cache_control.h>
 
 #include "geometry/vector.hpp"
+#include "manifold/curves/curve_finder.hpp"
 #include "queries/feature_name.hpp"
 #include "supple/use_manifolds.hpp"
 
@@ -353,7 +355,12 @@ void ManifoldFinder::add_patches(const DetectResult& result, const ContactGroup&
 }
 
 void use_manifolds() {
-  set_manifold_maker([]() -> std::unique_ptr<ManifoldMaker> { return std::make_unique<ManifoldFinder>(); });
+  static constexpr ManifoldMethods methods{
+      .curve_maker = []() -> std::unique_ptr<CurveMaker> { return std::make_unique<CurveFinder>(); },
+      .manifold_maker = []() -> std::unique_ptr<ManifoldMaker> {
+        return std::make_unique<ManifoldFinder>();
+      }};
+  set_manifold_methods(methods);
 }
 
 }  // namespace supple

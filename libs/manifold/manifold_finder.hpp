@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "answers/penetration/manifold_methods.hpp"
 #include "manifold/touching_normals.hpp"
-#include "scene/manifold_maker.hpp"
 #include "supple/manifold.hpp"
 #include "supple/result.hpp"
 #include "world/world.hpp"

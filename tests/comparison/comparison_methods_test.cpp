@@ -39,6 +39,9 @@ std::vector<Method> all_methods() {
   }
   for (const BroadPhaseMethod broad_phase : {BroadPhaseMethod::sweep, BroadPhaseMethod::brute})
     methods.push_back({std::string("the broad phase ") + word_of(broad_phase), {.broad_phase = broad_phase}});
+  methods.push_back({"the descent one_side_first", {.comparison = {.descent = Descent::one_side_first}}});
+  methods.push_back({"the lazy refit", {.comparison = {.lazy_refit = true}}});
+  methods.push_back({"the list of colliding vertices", {.comparison = {.colliding_vertices = true}}});
   return methods;
 }
 
@@ -64,19 +67,25 @@ TEST(ComparisonMethods, AreRefusedByNameUntilTheyAreInUse) {
 TEST(Manifolds, AreRefusedByNameUntilTheyAreInUse) {
   Scene scene({.contacts = ContactKinds::penetration});
   for (int i = 0; i < 2; ++i) scene.add(make_model("fish"));
-  try {
-    scene.detect({.manifolds = true});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "manifolds are in the library supple::manifold; link it and call supple::use_manifolds() first");
-  }
+  const auto expect_refused = [](const auto& search, const std::string& what) {
+    try {
+      search();
+      FAIL() << what;
+    } catch (const Error& error) {
+      EXPECT_EQ(
+          error.what(),
+          what + " are in the library supple::manifold; link it and call supple::use_manifolds() first");
+    }
+  };
+  expect_refused([&] { scene.detect({.manifolds = true}); }, "manifolds");
+  expect_refused([&] { scene.detect({.curves = true}); }, "curves");
+  expect_refused([&] { scene.search({.curves = true}); }, "curves");
   EXPECT_GT(scene.detect().contacts.size(), 0u) << "the scene goes on";
   std::thread other(use_manifolds);
   use_manifolds();
   other.join();
   const DetectResult& result = scene.detect({.manifolds = true});
+  EXPECT_GT(result.curves.size(), 0u);
   EXPECT_GT(result.manifolds.size(), 0u);
   EXPECT_EQ(result.step, 1u) << "the failed step does not count";
 }

@@ -3,10 +3,13 @@
 
 #include <memory>
 
+#include "supple/use_manifolds.hpp"
+
 // Only rank 0 prints; the program fails when a test failed on any rank.
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   testing::InitGoogleTest(&argc, argv);
+  supple::use_manifolds();
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   testing::TestEventListeners& listeners = testing::UnitTest::GetInstance()->listeners();

@@ -30,6 +30,7 @@
 #include <string_view>
 #include <vector>
 
+#include "supple/comparison.hpp"
 #include "supple/models.hpp"
 #include "supple/recording.hpp"
 #include "supple/scene.hpp"
@@ -204,6 +205,7 @@ void run(const Arguments& arguments) {
 
 int main(int count, char** words) {
   try {
+    supple::use_comparison_methods();
     run(parse(count, words));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

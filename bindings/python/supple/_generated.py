@@ -40,7 +40,7 @@ class Descent(enum.IntEnum):
     both_sides = 0
     'all children of one node with all of the other, with vector instructions'
     one_side_first = 1
-    "As in the paper's Figure 4: the children of the first node with the second node, then those that collide with the children of the second node. `StepStats.boxes_tested` counts these tests. For contacts at rest; it is slower."
+    "As in the paper's Figure 4: the children of the first node with the second node, then those that collide with the children of the second node. `StepStats.boxes_tested` counts these tests. For contacts at rest; it is slower and needs `use_comparison_methods`."
 
 
 class FeatureKind(enum.IntEnum):
@@ -778,9 +778,9 @@ CONTRACTS = {
     'usable_cores':
         'The number of cores that this process may use, at least 1.',
     'use_comparison_methods':
-        'Lets this process use the methods that only serve comparisons with the defaults: `SceneOptions.bounding_volume` other than `aabb`, `ObjectOctreeOptions.build` other than `balanced`, and `BroadPhaseMethod.sweep` and `brute`. Without this call, `Scene`, `Scene.add` and `BroadPhase` throw `Error` for these options. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
+        'Lets this process use the methods that only serve comparisons with the defaults: `SceneOptions.bounding_volume` other than `aabb`, `ObjectOctreeOptions.build` other than `balanced`, `BroadPhaseMethod.sweep` and `brute`, `Descent.one_side_first`, `colliding_vertices` and `lazy_refit`. Without this call, `Scene`, `Scene.add` and `BroadPhase` throw `Error` for these options. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
     'use_manifolds':
-        'Lets the scenes of this process make manifolds: `SceneOptions.manifolds` and `DetectRequest.manifolds`. Without this call, `Scene.detect` throws `Error` for them. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
+        'Lets the scenes of this process find curves and make manifolds: `curves` and `manifolds` of `SceneOptions` and of `DetectRequest`. Without this call, `Scene.detect` and `Scene.search` throw `Error` for them. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
     'valid_utf8':
         'Replaces every byte that is not part of valid UTF-8 by U+FFFD, because names of files, and names in files, may be any bytes.',
     'value_of_set':

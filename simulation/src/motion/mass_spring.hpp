@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "geometry/point_bounds.hpp"
 #include "motion/deformation_limit.hpp"
 #include "motion/force_sum.hpp"
 #include "motion/implicit/backward_euler.hpp"
 #include "motion/network/spring_network.hpp"
 #include "motion/vertex_kind.hpp"
+#include "simulation/point_bounds.hpp"
 #include "supple/motion.hpp"
 
 namespace supple {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "geometry/point_bounds.hpp"
+#include "simulation/point_bounds.hpp"
 #include "supple/simulation_descriptions.hpp"
 
 namespace supple {

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/point_bounds.hpp"
 #include "geometry/vector.hpp"
+#include "simulation/point_bounds.hpp"
 #include "supple/trigonometry.hpp"
 
 namespace supple {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/timer.hpp"
+#include "octree/comparison_methods.hpp"
 #include "queries/queries.hpp"
 
 namespace supple {
@@ -23,7 +24,8 @@ bool Detection::run(const Question& question, std::uint64_t max_contacts, const 
   stats.broad_phase_seconds = stage.lap();
   if (stop.stop_requested()) return false;
   if (question_.shapes().lazy) {
-    stats.triangles_refitted += world_.refit_where_objects_meet(pairs_.jobs());
+    stats.triangles_refitted +=
+        comparison_methods({}).refit_where_objects_meet(world_, pairs_.jobs(), node_pairs_, children_);
     stats.refit_seconds += stage.lap();
   }
   const World::Work rebuilt = world_.rebuild_degraded(pairs_.jobs(), pairs_.boxes());
@@ -50,12 +52,9 @@ bool Detection::find_contacts(const PassInput& input, StepStats& stats) {
     for (const std::uint32_t slot : {a, b}) {
       if (std::exchange(is_listed_[slot], std::uint8_t{1}) != 0) continue;
       WorldObject& object = world_[slot];
-      intersected_objects_[slot] = {world_.id_of(slot),
-                                    object.resting_view(),
-                                    object.octree().triangle_ids(),
-                                    object.octree().vertex_count(),
+      intersected_objects_[slot] = {world_.id_of(slot), object.resting_view(), &object.octree(),
                                     object.vertex_groups(),
-                                    object.neighbours()};
+                                    object.tests_neighbours() ? &object.vertex_triangles() : nullptr};
     }
   }
   const IntersectionSearch search{question_.has_intersections(),

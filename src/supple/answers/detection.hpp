@@ -54,6 +54,8 @@ class Detection {
   World& world_;
   Question question_;
   ObjectPairs pairs_;
+  std::vector<NodePair> node_pairs_;  // scratch memory of lazy shapes
+  std::vector<ChildPair> children_;
   IntersectionPass intersection_pass_;
   ImpactPass impact_pass_;
   ProximityPass proximity_pass_;

@@ -37,16 +37,6 @@ double growth_of(const ObjectOptions& object, const VertexWays* ways, const Ques
                   question.has_proximity() ? growth(object.margin) : 0);
 }
 
-Aabb grown(const Aabb& box, double by) {
-  if (by == 0 || box.empty()) return box;
-  Aabb result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.min[axis] = round_down(box.min[axis] - by);
-    result.max[axis] = round_up(box.max[axis] + by);
-  }
-  return result;
-}
-
 ObjectPairs::ObjectPairs(const World& world, BoundingVolume volume)
     : world_(world),
       volume_(volume),

@@ -12,8 +12,6 @@ namespace supple {
 /// How far the volume of an object must grow on all sides, so that it overlaps each volume that grew like it
 /// where elements of the two objects are of interest. `ways` are null but for a safe step.
 double growth_of(const ObjectOptions& object, const VertexWays* ways, const Question& question);
-/// The box, rounded outward.
-Aabb grown(const Aabb& box, double growth);
 
 /// The broad phase of one search over a world: the pairs of objects whose volumes overlap, and what the
 /// narrow phase tests. It keeps the volumes between searches, so a search tests only what changed.

@@ -1,5 +1,6 @@
 #include "answers/question.hpp"
 
+#include "answers/penetration/manifold_methods.hpp"
 #include "core/error.hpp"
 #include "supple/option_descriptions.hpp"
 
@@ -24,6 +25,7 @@ Question question_of(const DetectRequest& request, const SceneOptions& options) 
   question.curves = (question.curves || question.manifolds) && question.has_penetration();
   if (question.has_penetration() && request.max_contacts != DetectRequest{}.max_contacts)
     fail("detect: penetration needs all intersections; request it without max_contacts");
+  if (question.curves) manifold_methods(question.manifolds ? "manifolds" : "curves");
   return question;
 }
 

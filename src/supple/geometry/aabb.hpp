@@ -29,6 +29,28 @@ void extend(Aabb& box, const Vec3<Scalar>& point) {
   }
 }
 
+/// The box that is larger by this on all sides, rounded outward.
+inline Aabb grown(const Aabb& box, double by) {
+  if (by == 0 || box.empty()) return box;
+  Aabb result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.min[axis] = round_down(box.min[axis] - by);
+    result.max[axis] = round_up(box.max[axis] + by);
+  }
+  return result;
+}
+
+/// The squared distance of two boxes, rounded.
+template <class Box>
+double squared_gap(const Box& a, const Box& b) {
+  double square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({double{a.min[axis]} - b.max[axis], double{b.min[axis]} - a.max[axis], 0.0});
+    square += gap * gap;
+  }
+  return square;
+}
+
 /// Encloses fl(p + offset) for every p in the box, because the rounded sum is monotonic.
 inline Aabb moved(const Aabb& box, const Vec3d& offset) {
   if (offset == Vec3d{} || box.empty()) return box;

@@ -8,10 +8,14 @@
 
 namespace supple {
 
-/// Disjoint sets of vertices (union-find), as trees in a flat array with path halving.
+/// Disjoint sets of vertices (union-find), as trees in a flat array with path halving. Keeps its memory.
 class VertexSets {
  public:
-  explicit VertexSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  explicit VertexSets(std::size_t count = 0) { start(count); }
+  void start(std::size_t count) {
+    parent_.resize(count);
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
 
   /// The smallest vertex of the set.
   std::uint32_t root(std::uint32_t vertex) {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "geometry/aabb.hpp"
-#include "geometry/point_bounds.hpp"
 #include "geometry/vector.hpp"
 #include "octree/build/balanced_build.hpp"
 #include "octree/comparison_methods.hpp"
@@ -49,15 +48,6 @@ OctreeTopology build_topology(const PositionsView& positions, std::span<const Tr
     return build_balanced_octree(centers, triangles, options, parallel);
   return comparison_methods(std::string("the octree build ") + word_of(options.build))
       .octree(positions, triangles, centers, options);
-}
-
-/// The bounds of finite points, rounded outward.
-Aabb box_of(const PointBounds& bounds) {
-  Aabb box;
-  if (!(bounds.low.x <= bounds.high.x)) return box;
-  extend(box, bounds.low);
-  extend(box, bounds.high);
-  return box;
 }
 
 }  // namespace
@@ -243,42 +233,6 @@ void ObjectOctree::list_nodes_of_vertices() {
   std::vector<std::uint32_t> next(first_node_.begin(), first_node_.end() - 1);
   for_each_leaf_vertex(
       [&](std::uint32_t vertex, std::uint32_t n) { nodes_of_vertices_[next[vertex]++] = n; });
-}
-
-bool ObjectOctree::refit_object(const VertexBuffer& vertices, const std::optional<Aabb>& box) {
-  if (nodes_.empty()) return true;
-  is_current_.assign(nodes_.size(), 0);
-  PointBounds bounds;
-  bool all_finite = true;
-  const auto add = [&](std::uint32_t vertex) {
-    const Vec3d p = vertices[vertex];
-    all_finite = all_finite && is_finite(p);
-    bounds.add(p);
-  };
-  if (!unused_vertices_.empty()) {
-    for (const Triangle& triangle : triangles_) std::for_each(triangle.begin(), triangle.end(), add);
-    for (const std::uint32_t vertex : unused_vertices_)
-      all_finite = all_finite && is_finite(vertices[vertex]);
-  } else if (!box) {
-    for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) add(vertex);
-  }
-  box_ = box && unused_vertices_.empty() ? *box : box_of(bounds);
-  if (all_finite && volumes_) volumes_->refit_object(refitted(vertices, {}, false), box_);
-  return all_finite;
-}
-
-std::size_t ObjectOctree::refit_children(std::uint32_t n, const VertexBuffer& vertices) {
-  if (std::exchange(is_current_[n], std::uint8_t{1}) != 0) return 0;
-  const OctreeNode& node = nodes_[n];
-  for (int child = 0; child < node_width; ++child) {
-    PointBounds bounds;
-    for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
-      for (const std::uint32_t vertex : triangles_[t]) bounds.add(vertices[vertex]);
-    }
-    set_child_box(boxes_[n], child, box_of(bounds));
-  }
-  if (volumes_) volumes_->refit(refitted(vertices, {}, false), n, n + 1);
-  return node.size();
 }
 
 std::size_t ObjectOctree::bytes() const {

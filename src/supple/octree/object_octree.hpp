@@ -94,15 +94,6 @@ class ObjectOctree {
   std::optional<std::size_t> refit_moved(const VertexBuffer& vertices, std::span<const std::uint32_t> moved,
                                          const Parallel& parallel);
 
-  /// Computes the volume of the whole object alone; the volumes of nodes are out of date until
-  /// `refit_children` computes them. `box`, if any, encloses all vertices, which are then finite. O(n), or
-  /// O(1) for a box that is given and no sphere. Returns false when a vertex is not finite; then the volumes
-  /// are invalid.
-  bool refit_object(const VertexBuffer& vertices, const std::optional<Aabb>& box);
-  /// After `refit_object`: computes the volumes of the children of a node from the vertices below, unless it
-  /// has. Returns the number of triangles that it read.
-  std::size_t refit_children(std::uint32_t node, const VertexBuffer& vertices);
-
   /// The octree of the same triangles and options, built from other positions. O(n log n).
   ObjectOctree rebuilt(const PositionsView& positions, const Parallel& parallel = Parallel(1)) const;
 
@@ -121,6 +112,8 @@ class ObjectOctree {
   std::size_t bytes() const;
 
  private:
+  friend struct LazyRefit;  // of the library supple::comparison
+
   void list_leaf_vertices(const Parallel& parallel);
   void list_nodes_of_vertices();
   void mark_with_ancestors(std::uint32_t node);
@@ -144,7 +137,7 @@ class ObjectOctree {
   // up to `nodes_of_vertices_[first_node_[v + 1]]`, and the nodes to refit with a byte for each node.
   std::vector<std::uint32_t> first_node_, nodes_of_vertices_, stale_nodes_;
   std::vector<std::uint8_t> is_stale_;
-  std::vector<std::uint8_t> is_current_;  // by node, since `refit_object`
+  std::vector<std::uint8_t> is_current_;  // by node, since `LazyRefit::refit_object`
   ObjectOctreeOptions options_;
   BoundingVolume bounding_volume_;
   SphereFit sphere_fit_;

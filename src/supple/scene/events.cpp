@@ -9,7 +9,7 @@
 namespace supple {
 
 void Events::start(const Question& question) {
-  if (question.manifolds && !manifolds_) manifolds_ = make_manifold_maker();
+  if (question.manifolds && !manifolds_) manifolds_ = manifold_methods("manifolds").manifold_maker();
 }
 
 void Events::prepare(World& world, const Question& question, DetectResult& found) {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "answers/penetration/manifold_methods.hpp"
 #include "answers/question.hpp"
 #include "core/kept_lists.hpp"
-#include "scene/manifold_maker.hpp"
 #include "scene/pair_cache.hpp"
 #include "supple/result.hpp"
 #include "world/world.hpp"

@@ -4,7 +4,6 @@
 #include <atomic>
 
 #include "geometry/aabb.hpp"
-#include "narrow_phase/traversal.hpp"
 #include "world/world.hpp"
 
 namespace supple {
@@ -53,26 +52,6 @@ World::Work World::refit(const SearchedShapes& shapes) {
                   [&](WorldObject& object, const Parallel& workers) { object.update(shapes, workers); });
   for (const std::uint32_t slot : stale_) work.triangles += slots_[slot].object->refitted_triangles();
   return work;
-}
-
-std::uint64_t World::refit_where_objects_meet(std::span<const ContactJob> jobs) {
-  std::uint64_t triangles = 0;
-  for (const ContactJob& job : jobs) {
-    WorldObject &a = *slots_[job.a].object, &b = *slots_[job.b].object;
-    if (job.a == job.b || a.octree().nodes().empty() || b.octree().nodes().empty()) continue;
-    const ObjectPairView pair = pair_of(a.resting_view(), b.resting_view());
-    for (node_pairs_.assign(1, {}); !node_pairs_.empty();) {
-      const NodePair at = node_pairs_.back();
-      node_pairs_.pop_back();
-      triangles += a.update_children(at.a) + b.update_children(at.b);
-      children_.clear();
-      find_overlapping_children(pair, at, children_);
-      for (const ChildPair& both : children_) {
-        if (const auto below = nodes_below(pair, both)) node_pairs_.push_back(*below);
-      }
-    }
-  }
-  return triangles;
 }
 
 /// Counts the queries of each octree. Jobs of objects that did not move search nothing. A query of another

@@ -1,6 +1,5 @@
 #include "world/world.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -19,6 +18,10 @@ SceneOptions checked(SceneOptions options) {
   check(options);
   if (options.bounding_volume != BoundingVolume::aabb)
     comparison_methods(std::string("the bounding volume ") + word_of(options.bounding_volume));
+  if (options.comparison.descent != Descent::both_sides)
+    comparison_methods(std::string("the descent ") + word_of(options.comparison.descent));
+  if (options.comparison.lazy_refit) comparison_methods("the lazy refit");
+  if (options.comparison.colliding_vertices) comparison_methods("the list of colliding vertices");
   if (is_tested_after_boxes(options.bounding_volume) &&
       (options.comparison.lazy_refit || options.comparison.descent != Descent::both_sides))
     fail(

@@ -85,9 +85,6 @@ class World {
   };
   /// Refits the objects that have moved, and those that lack one of the shapes.
   Work refit(const SearchedShapes& shapes);
-  /// After `refit` of lazy shapes: refits the nodes that a search of these jobs visits. Returns the number of
-  /// triangles that it read.
-  std::uint64_t refit_where_objects_meet(std::span<const ContactJob> jobs);
   /// Rebuilds degraded octrees where that pays, some in each call: the others wait. `jobs` are those of the
   /// search; jobs of objects that did not move search nothing. `boxes` are those of the slots. Views of
   /// rebuilt octrees are invalid afterwards.
@@ -120,8 +117,6 @@ class World {
                 counted_version_ = 0;  // the newest, and the newest when queries of octrees were counted
   std::vector<std::uint32_t> stale_, degraded_, small_;  // scratch memory
   std::vector<double> queries_;                          // of degraded objects
-  std::vector<NodePair> node_pairs_;                     // scratch memory
-  std::vector<ChildPair> children_;
 };
 
 /// Which options got other values.

@@ -137,8 +137,7 @@ TEST(BoundedMemory, OfTheFirstIntersectionsIsLimited) {
     object.move().set_positions(star.positions, Parallel(1));
     object.update({.resting = true}, Parallel(1));
     const IntersectedObject listed{
-        {0, 0}, object.resting_view(), object.octree().triangle_ids(), star.positions.size(),
-        {},     object.neighbours()};
+        {0, 0}, object.resting_view(), &object.octree(), {}, &object.vertex_triangles()};
     const auto find = [&](IntersectionPass& pass, std::uint64_t most, std::uint32_t threads) {
       const ContactJob job{0, 0};
       const std::uint64_t version = 1;

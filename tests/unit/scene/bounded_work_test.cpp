@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "answers/penetration/curve_finder.hpp"
 #include "core/parallel.hpp"
+#include "manifold/curves/curve_finder.hpp"
 #include "queries/object_queries.hpp"
 #include "queries/pairs/nearest_pair.hpp"
 #include "supple/models.hpp"
@@ -322,10 +322,10 @@ std::size_t work_of_curve(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b
   scene.add(mesh_b, {.solid = true});
   const DetectResult& result = scene.detect();
   Searched a(mesh_a, 0), b(mesh_b, 1);
-  const QueriedObject of_a = a.view(), of_b = b.view();
+  const PenetratedObject of_a{a.view(), a.surface(), true}, of_b{b.view(), b.surface(), true};
   CurveFinder finder;
   CurveLists lists;
-  finder.find({a.surface(), b.surface(), &of_a, &of_b, true, true, false, &result.groups[0], &result}, lists);
+  finder.find({&of_a, &of_b, &result.groups[0], &result}, lists);
   EXPECT_EQ(lists.curves.size(), 1u);
   EXPECT_NEAR(lists.curves[0].depth, depth, 0.01);
   return finder.visited();

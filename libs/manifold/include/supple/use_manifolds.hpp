@@ -2,9 +2,9 @@
 
 namespace supple {
 
-/// Lets the scenes of this process make manifolds: `SceneOptions::manifolds` and `DetectRequest::manifolds`.
-/// Without this call, `Scene::detect` throws `Error` for them. Call it before; repeated calls and calls from
-/// several threads are allowed.
+/// Lets the scenes of this process find curves and make manifolds: `curves` and `manifolds` of `SceneOptions`
+/// and of `DetectRequest`. Without this call, `Scene::detect` and `Scene::search` throw `Error` for them.
+/// Call it before; repeated calls and calls from several threads are allowed.
 ///
 /// It needs a call because a linker leaves out what nothing names.
 void use_manifolds();

@@ -9,6 +9,7 @@
 
 #include "contact/intersection/neighbour_test.hpp"
 #include "contact/intersection/triangle_intersection.hpp"
+#include "octree/comparison_methods.hpp"
 
 namespace supple {
 
@@ -115,8 +116,8 @@ IntersectionPass::TaskInput IntersectionPass::input_of_job(std::uint32_t job) co
           pair,
           {pair.a.arrays, pair.a.translation},
           {pair.b.arrays, pair.b.translation},
-          objects_[a].triangle_ids,
-          objects_[b].triangle_ids,
+          objects_[a].octree->triangle_ids(),
+          objects_[b].octree->triangle_ids(),
           objects_[a],
           objects_[b]};
 }
@@ -130,9 +131,8 @@ void IntersectionPass::for_neighbours(const TaskInput& input, std::size_t task, 
   std::size_t first_task = task, last_task = task + 1;
   while (first_task > 0 && tasks_[first_task - 1].job == input.job) --first_task;
   while (last_task < tasks_.size() && tasks_[last_task].job == input.job) ++last_task;
-  const std::size_t count = input.object_a.vertex_count;
-  const std::size_t parts = last_task - first_task, part = task - first_task;
-  const auto corners = input.pair.a.arrays.triangles;
+  const ObjectOctree& octree = *input.object_a.octree;
+  const std::size_t count = octree.vertex_count(), parts = last_task - first_task, part = task - first_task;
   worker.neighbours.clear();
   const auto pass_on = [&] {
     test(worker.neighbours);
@@ -143,10 +143,11 @@ void IntersectionPass::for_neighbours(const TaskInput& input, std::size_t task, 
         input.object_a.neighbours->around(static_cast<std::uint32_t>(v));
     for (std::size_t i = 0; i < around.size(); ++i) {
       for (std::size_t k = i + 1; k < around.size(); ++k) {
-        const Triangle &p = corners[around[i]], &q = corners[around[k]];
+        const TrianglePair pair{octree.octree_triangle(around[i]), octree.octree_triangle(around[k])};
+        const Triangle &p = octree.triangles()[pair.a], &q = octree.triangles()[pair.b];
         if (smallest_common_vertex(p, q) != v) continue;
-        if (meet_elsewhere(p, points_of(input.pair.a, around[i]), q, points_of(input.pair.a, around[k])))
-          worker.neighbours.push_back({around[i], around[k]});
+        if (meet_elsewhere(p, points_of(input.pair.a, pair.a), q, points_of(input.pair.a, pair.b)))
+          worker.neighbours.push_back(pair);
       }
       if (worker.neighbours.size() >= most_waiting) pass_on();
     }
@@ -307,45 +308,13 @@ void IntersectionPass::gather_found(std::size_t outcome, Worker& worker, const P
 }
 
 void IntersectionPass::gather_colliding_vertices() {
-  vertex_groups_.clear();
-  vertices_.clear();
+  colliding_.groups.clear();
+  colliding_.vertices.clear();
   if (!search_.colliding_vertices) return;
-  leaves_.clear();
+  colliding_.leaves.clear();
   for (const Worker& worker : workers_)
-    leaves_.insert(leaves_.end(), worker.leaves.begin(), worker.leaves.end());
-  // The result is a set of vertices, so the order of leaves within a job does not matter.
-  std::sort(leaves_.begin(), leaves_.end(),
-            [](const CollidingLeaves& p, const CollidingLeaves& q) { return p.job < q.job; });
-  for (auto first = leaves_.begin(); first != leaves_.end();) {
-    const std::uint32_t job = first->job;
-    const auto last =
-        std::find_if(first, leaves_.end(), [&](const auto& leaves) { return leaves.job != job; });
-    const ContactJob pair = jobs_[job];
-    CollidingVertices group{objects_[pair.a].id, objects_[pair.b].id,
-                            static_cast<std::uint32_t>(vertices_.size()), 0, 0};
-    append_marked_vertices(pair.a, {first, last}, false);
-    group.count_a = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex;
-    append_marked_vertices(pair.b, {first, last}, true);
-    group.count_b = static_cast<std::uint32_t>(vertices_.size()) - group.first_vertex - group.count_a;
-    vertex_groups_.push_back(group);
-    first = last;
-  }
-}
-
-void IntersectionPass::append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves,
-                                              bool side_b) {
-  const IntersectedObject& owner = objects_[object];
-  marked_.assign(owner.vertex_count, 0);
-  for (const CollidingLeaves& pair : leaves) {
-    const std::uint32_t begin = side_b ? pair.leaves.begin_b : pair.leaves.begin_a;
-    const std::uint32_t end = side_b ? pair.leaves.end_b : pair.leaves.end_a;
-    for (std::uint32_t t = begin; t < end; ++t) {
-      for (const std::uint32_t vertex : owner.view.arrays.triangles[t]) marked_[vertex] = 1;
-    }
-  }
-  for (std::uint32_t vertex = 0; vertex < marked_.size(); ++vertex) {
-    if (marked_[vertex] != 0) vertices_.push_back(vertex);
-  }
+    colliding_.leaves.insert(colliding_.leaves.end(), worker.leaves.begin(), worker.leaves.end());
+  comparison_methods({}).list_colliding_vertices(jobs_, objects_, colliding_);
 }
 
 }  // namespace supple

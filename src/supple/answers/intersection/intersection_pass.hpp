@@ -13,6 +13,7 @@
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "mesh/vertex_triangles.hpp"
+#include "octree/object_octree.hpp"
 #include "supple/contact.hpp"
 #include "supple/result.hpp"
 #include "world/object/vertex_groups.hpp"
@@ -23,10 +24,9 @@ namespace supple {
 struct IntersectedObject {
   ObjectId id;
   OctreeView view;
-  std::span<const std::uint32_t> triangle_ids;  ///< the user's id of each triangle in octree order
-  std::size_t vertex_count = 0;
+  const ObjectOctree* octree = nullptr;
   VertexGroups groups;
-  /// The triangles around each vertex, in octree order, if triangles that share one are tested; else null.
+  /// The triangles around each vertex, if triangles that share one are tested; else null.
   const VertexTriangles* neighbours = nullptr;
 };
 
@@ -49,6 +49,18 @@ struct FoundContact {
 };
 static_assert(sizeof(FoundContact) == 16);
 
+struct CollidingLeaves {
+  std::uint32_t job = 0;
+  LeafPair leaves;
+};
+/// The vertices in colliding leaves, by job.
+struct CollidingVertexLists {
+  std::vector<CollidingLeaves> leaves;
+  std::vector<CollidingVertices> groups;
+  std::vector<std::uint32_t> vertices;
+  std::vector<std::uint8_t> marked;  // scratch: by vertex of an object
+};
+
 /// What a worker of `IntersectionPass` has.
 struct IntersectionWorker : PassWorker<FoundContact> {
   /// The rest of a contact. `FoundContact`, which is sorted, stays small.
@@ -56,11 +68,6 @@ struct IntersectionWorker : PassWorker<FoundContact> {
     Vec3d normal;
     std::uint32_t first_point = 0;  ///< index into `points`
   };
-  struct CollidingLeaves {
-    std::uint32_t job = 0;
-    LeafPair leaves;
-  };
-
   std::vector<Details> details;
   std::vector<ContactPoint> points;
   // Pairs that cross in a segment, in octree order. They wait here until there is a whole block of them.
@@ -99,20 +106,19 @@ class IntersectionPass : public Pass<IntersectionPass, IntersectedObject, Inters
 
   std::span<const Contact> contacts() const { return records_; }
   std::span<const ContactPoint> contact_points() const { return points_; }
-  std::span<const CollidingVertices> colliding_vertex_groups() const { return vertex_groups_; }
-  std::span<const std::uint32_t> colliding_vertices() const { return vertices_; }
+  std::span<const CollidingVertices> colliding_vertex_groups() const { return colliding_.groups; }
+  std::span<const std::uint32_t> colliding_vertices() const { return colliding_.vertices; }
 
   template <class Visit>
   void visit_lists(const Visit& visit) {
     Pass::visit_lists(visit);
     visit(points_);
-    visit(vertex_groups_);
-    visit(vertices_);
+    visit(colliding_.groups);
+    visit(colliding_.vertices);
   }
 
  private:
   friend Pass;
-  using CollidingLeaves = IntersectionWorker::CollidingLeaves;
   static constexpr std::size_t of_contacts = 0, of_points = 1;
 
   ObjectPairView view_of_job(std::uint32_t job) const;
@@ -147,14 +153,10 @@ class IntersectionPass : public Pass<IntersectionPass, IntersectedObject, Inters
   void move_known();
   void gather_found(std::size_t outcome, Worker& worker, const Parallel& parallel);
   void gather_colliding_vertices();
-  void append_marked_vertices(std::uint32_t object, std::span<const CollidingLeaves> leaves, bool side_b);
 
   IntersectionSearch search_;
-  std::vector<CollidingLeaves> leaves_;
-  std::vector<std::uint8_t> marked_;
   std::vector<ContactPoint> points_;
-  std::vector<CollidingVertices> vertex_groups_;
-  std::vector<std::uint32_t> vertices_;
+  CollidingVertexLists colliding_;
 };
 
 }  // namespace supple

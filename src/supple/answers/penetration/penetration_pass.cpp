@@ -37,6 +37,9 @@ bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObje
   objects_ = objects;
   list_pairs(input.jobs);
   workers_.resize(input.parallel.worker_count());
+  for (Worker& worker : workers_) {
+    if (curves && !worker.curve_maker) worker.curve_maker = manifold_methods("curves").curve_maker();
+  }
   outcomes_.plan(pairs_, input.versions, std::exchange(with_curves_, curves) == curves, workers_.size());
   const std::span<const std::uint32_t> open = outcomes_.open_jobs();
   for (Worker& worker : workers_) std::apply([](auto&... list) { (list.clear(), ...); }, worker.found.all());
@@ -84,9 +87,7 @@ void PenetrationPass::run_task(const Task& task, const DetectResult& result, Wor
   const PenetratedObject &inner = objects_[task.inner], &outer = objects_[task.outer];
   if (task.inner != task.outer && outer.is_solid) find_inside(task, result, worker);
   if (with_curves_ && task.inner <= task.outer && task.group != nullptr)
-    worker.curve_finder.find({inner.surface, outer.surface, &inner.queried, &outer.queried, inner.is_solid,
-                              outer.is_solid, task.inner == task.outer, task.group, &result},
-                             worker.found.curves);
+    worker.curve_maker->find({&inner, &outer, task.group, &result}, worker.found.curves);
 }
 
 /// Lists the triangles with contacts, their corners, and their edges that have a point in common with the
@@ -154,7 +155,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
     const Triangle& triangle = inner.surface.triangle(id);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = triangle[k], w = triangle[(k + 1) % 3];
-      if (v != w && !is_cut(v, w)) worker.sets.join(worker.corner_of[v], worker.corner_of[w], false);
+      if (v != w && !is_cut(v, w)) worker.sets.join(worker.corner_of[v], worker.corner_of[w]);
     }
   }
   worker.inside.clear();
@@ -162,7 +163,7 @@ void PenetrationPass::find_inside(const Task& task, const DetectResult& result, 
   worker.has_contact.assign(around.parts().size(), 0);
   worker.state.resize(corners.size());
   for (std::uint32_t c = 0; c < corners.size(); ++c) {
-    const std::uint32_t v = corners[c], root = worker.sets.find(c).root;
+    const std::uint32_t v = corners[c], root = worker.sets.root(c);
     worker.has_contact[around.part_of(v)] = 1;
     if (root == c) worker.state[c] = worker.queries.inside(0, outer.front(), inner.surface.position(v));
     if (worker.state[root] == Containment::on) worker.found.on_surface.push_back(v);

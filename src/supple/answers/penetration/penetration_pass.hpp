@@ -2,29 +2,23 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <vector>
 
 #include "answers/pass.hpp"
-#include "answers/penetration/curve_finder.hpp"
-#include "answers/penetration/surface_view.hpp"
+#include "answers/penetration/manifold_methods.hpp"
 #include "contact/distance/distance_batch.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
+#include "mesh/vertex_sets.hpp"
 #include "queries/object_queries.hpp"
 #include "supple/options.hpp"
 #include "supple/penetration.hpp"
 #include "supple/result.hpp"
 
 namespace supple {
-
-/// The data of an object that the pass reads.
-struct PenetratedObject {
-  QueriedObject queried;
-  SurfaceView surface;
-  bool is_solid = false;
-};
 
 /// The lists of the result.
 struct PenetrationLists {
@@ -92,7 +86,7 @@ class PenetrationPass {
   };
   using Outcomes = JobOutcomes<list_count>;
   struct Worker {
-    CurveFinder curve_finder;
+    std::unique_ptr<CurveMaker> curve_maker;  // where curves were asked for
     ObjectQueries queries;
     DistanceBatch distances;
     PenetrationLists found;
@@ -101,7 +95,7 @@ class PenetrationPass {
     std::vector<std::array<std::uint32_t, 2>> cut_edges;
     std::vector<std::uint32_t> corners, triangles;
     std::vector<std::uint32_t> corner_of;  // by vertex: its place in `corners`, if it is there
-    ParitySets sets;
+    VertexSets sets;
     std::vector<Containment> state;         // by set
     std::vector<std::uint8_t> marks;        // by vertex; zero between tasks
     bool has_marks = false;                 // a task did not end, because memory ran out

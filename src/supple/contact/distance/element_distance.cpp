@@ -159,11 +159,7 @@ Vec3d direction_across(const IntegerNumbers& numbers, const ElementPoints& eleme
   for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(vertices); ++i) {
     if (elements.count_a != i + 1) {
       const Vec3d e = rounded_direction(numbers.difference(i + 1, i));
-      const Vec3d size = absolute(e);
-      if (e == Vec3d{}) continue;
-      const bool x_is_least = size.x <= size.y && size.x <= size.z;
-      const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-      return direction_of(supple::cross(e, axis));
+      if (e != Vec3d{}) return direction_of(supple::cross(e, shortest_axis(e)));
     }
   }
   return {1, 0, 0};

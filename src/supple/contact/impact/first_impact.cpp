@@ -25,20 +25,6 @@ ElementPoints element_points(const std::array<Vec3d, 4>& points, bool are_edges)
 
 namespace {
 
-/// The vector divided by its largest coordinate, so that squares neither overflow nor underflow, or 0 when it
-/// has no direction.
-Vec3d scaled(const Vec3d& v) {
-  const double size = largest_magnitude(v);
-  if (!(size > 0) || !std::isfinite(size)) return {};
-  return {v.x / size, v.y / size, v.z / size};
-}
-
-/// A vector of length 1, or 0 when `v` has no direction.
-Vec3d normalized(const Vec3d& v) {
-  const Vec3d s = scaled(v);
-  return s == Vec3d{} ? s : (1 / std::sqrt(dot(s, s))) * s;
-}
-
 /// Places times a power of two, so that products of coordinates do not overflow or underflow.
 struct Scaled {
   double factor = 1;
@@ -187,12 +173,8 @@ Impact impact_at(const ElementMotion& motion, const RelativeMotion& relative, do
   Impact impact =
       moderate_impact_at(smaller, relative_motion(smaller), time, touching_at_start, factor * separation);
   // Rounding could lead beyond the largest double, and so can a distance.
-  const auto restored = [](double x) {
-    constexpr double most = std::numeric_limits<double>::max();
-    return std::clamp(x / factor, -most, most);
-  };
-  impact.start_distance = restored(impact.start_distance);
-  impact.point = {restored(impact.point.x), restored(impact.point.y), restored(impact.point.z)};
+  impact.start_distance = restored(impact.start_distance, factor);
+  impact.point = restored(impact.point, factor);
   return impact;
 }
 

@@ -63,13 +63,7 @@ Vec3d perpendicular(const TrianglePoints& a, const TrianglePoints& b) {
       if (squared_norm(edge) > squared_norm(longest)) longest = edge;
     }
   }
-  int axis = 0;
-  for (int i = 1; i < 3; ++i) {
-    if (std::fabs(longest[i]) < std::fabs(longest[axis])) axis = i;
-  }
-  Vec3d unit;
-  unit[axis] = 1;
-  const Vec3d direction = cross(longest, unit);
+  const Vec3d direction = cross(longest, shortest_axis(longest));
   return direction / norm(direction);
 }
 

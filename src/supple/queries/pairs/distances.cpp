@@ -4,22 +4,13 @@
 #include <cmath>
 
 #include "broad_phase/pair_finder.hpp"
-#include "core/float_rounding.hpp"
+#include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 #include "queries/check_queries.hpp"
 #include "queries/queries.hpp"
 
 namespace supple {
 namespace {
-
-double squared_gap(const Aabb& a, const Aabb& b) {
-  double square = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double gap = std::max({double{a.min[axis]} - b.max[axis], double{b.min[axis]} - a.max[axis], 0.0});
-    square += gap * gap;
-  }
-  return square;
-}
 
 /// Whether an object is far from something in another box.
 bool is_far_from(const Aabb& box, const Aabb& other) {
@@ -127,12 +118,7 @@ std::vector<Queries::NearObjects> Queries::near_objects(double max_distance) con
   std::vector<Aabb> boxes(world_.slot_count());
   // Rounded sums keep the order of exact ones, so these overlap where two boxes are within the distance.
   for (std::uint32_t slot = 0; slot < boxes.size(); ++slot) {
-    if (world_.at(slot) == nullptr || world_[slot].box().empty()) continue;
-    const Aabb& box = world_[slot].box();
-    for (int axis = 0; axis < 3; ++axis) {
-      boxes[slot].min[axis] = round_down(box.min[axis] - max_distance / 2);
-      boxes[slot].max[axis] = round_up(box.max[axis] + max_distance / 2);
-    }
+    if (world_.at(slot) != nullptr) boxes[slot] = grown(world_[slot].box(), max_distance / 2);
   }
   std::vector<NearObjects> near;
   PairFinder finder(BroadPhaseMethod::automatic, BoundingVolume::aabb, {});

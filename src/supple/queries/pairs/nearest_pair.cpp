@@ -211,16 +211,8 @@ void NearestPairSearch::squared_distances_of(const Aabb& box, const QueryBox& pl
                                              std::array<float, node_width>& squares) const {
   if (a_->fine_boxes == nullptr && b_->fine_boxes == nullptr)
     return squared_distances(seen_by_b(box), b_->view.boxes[node_b], squares);
-  for (int k = first; k < end; ++k) {
-    const QueryBox& other = placed_b[static_cast<std::size_t>(k)];
-    double square = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double gap =
-          std::max({placed.min[axis] - other.max[axis], other.min[axis] - placed.max[axis], 0.0});
-      square += gap * gap;
-    }
-    squares[static_cast<std::size_t>(k)] = static_cast<float>(square);
-  }
+  for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(end); ++k)
+    squares[k] = static_cast<float>(squared_gap(placed, placed_b[k]));
 }
 
 void NearestPairSearch::test_leaves(const Entry& leaves) {

@@ -32,7 +32,8 @@ std::size_t RestingShape::update_object(ObjectOctree& octree, Placement& placeme
   if (octree.triangles().size() != face_count_) return update(octree, placement, parallel);
   while (!has_object(placement)) {
     version_ = 0;
-    if (!octree.refit_object(placement.end(), box)) return update(octree, placement, parallel);
+    if (!comparison_methods({}).refit_object(octree, placement.end(), box))
+      return update(octree, placement, parallel);
     inert_.clear();
     non_finite_.clear();
     has_inert_faces_ = false;

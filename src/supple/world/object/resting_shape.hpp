@@ -9,6 +9,7 @@
 #include "core/parallel.hpp"
 #include "core/sort_once.hpp"
 #include "narrow_phase/traversal.hpp"
+#include "octree/comparison_methods.hpp"
 #include "octree/object_octree.hpp"
 #include "world/object/adaptive_culling.hpp"
 #include "world/object/placement.hpp"
@@ -35,7 +36,7 @@ class RestingShape {
   }
   /// The children of a node, after `update_object`. Returns the number of triangles that it read.
   std::size_t update_children(ObjectOctree& octree, const Placement& placement, std::uint32_t node) const {
-    return is_current(placement) ? 0 : octree.refit_children(node, placement.end());
+    return is_current(placement) ? 0 : comparison_methods({}).refit_children(octree, node, placement.end());
   }
   void update_culling(const ObjectOctree& octree, const Placement& placement, const Parallel& parallel) {
     culling_.update(version_, octree, octree.triangles(), placement.end(), placement.end(), parallel);

@@ -216,17 +216,6 @@ const VertexTriangles& WorldObject::vertex_triangles() {
   return vertex_triangles_.emplace(triangles, inert_by_id, octree_.vertex_count());
 }
 
-const VertexTriangles* WorldObject::neighbours() {
-  if (options.neighbours == Neighbours::skip || !options.self_collision) return nullptr;
-  const std::uint8_t* const inert = resting_view().arrays.inert;
-  if (!neighbours_ || inert != nullptr || neighbours_leave_out_inert_) {
-    const std::size_t count = inert != nullptr ? octree_.triangles().size() : 0;
-    neighbours_.emplace(octree_.triangles(), std::span(inert, count), octree_.vertex_count());
-    neighbours_leave_out_inert_ = inert != nullptr;
-  }
-  return &*neighbours_;
-}
-
 std::span<const std::uint8_t> WorldObject::inward_triangles() {
   if (!options.solid) return {};
   const PositionsView positions = placement_.shape().view();
@@ -259,7 +248,6 @@ bool WorldObject::rebuild(const Parallel& parallel) {
   fine_boxes_ = {};
   const SearchedShapes shapes = with_current(updated_);
   octree_ = std::move(octree);
-  neighbours_.reset();
   resting_.forget_octree();
   moving_.forget_octree();
   near_.forget_octree();

@@ -25,7 +25,8 @@ namespace supple {
 struct SearchedShapes {
   bool resting = false, moving = false;
   bool near = false;  ///< elements at the end of the step
-  /// Only the volumes of the objects, for the resting shape; `World::refit_where_objects_meet` follows.
+  /// Only the volumes of the objects, for the resting shape; `ComparisonMethods::refit_where_objects_meet`
+  /// follows.
   bool lazy = false;
   /// Self-collision culling, for objects that are tested against themselves.
   bool cull_resting = false, cull_moving = false;
@@ -139,12 +140,11 @@ class WorldObject {
   /// An edge with an odd number of triangles, as the user's vertices; nothing when the surface is closed.
   /// The first call takes O(n log n), later ones nothing.
   std::optional<std::array<std::uint32_t, 2>> open_edge();
-  /// The triangles around each vertex at rest, without inert ones. The first call takes O(n), and so does
-  /// each call while there are inert triangles.
+  /// The triangles around each vertex at rest, by the user's numbers, without inert ones. The first call
+  /// takes O(n), and so does each call while there are inert triangles.
   const VertexTriangles& vertex_triangles();
-  /// The triangles around each vertex in octree order, without inert ones, or null when neighbours are not
-  /// tested. Takes O(n) when the octree or the inert triangles have changed.
-  const VertexTriangles* neighbours();
+  /// Whether a search for intersections tests triangles that share a vertex.
+  bool tests_neighbours() const { return options.self_collision && options.neighbours != Neighbours::skip; }
   /// `Orientation::inward` of a solid at the positions of its shape; empty for other objects. Takes O(n) when
   /// these have changed.
   std::span<const std::uint8_t> inward_triangles();
@@ -188,11 +188,9 @@ class WorldObject {
   std::optional<std::array<std::uint32_t, 2>> open_edge_;
   std::optional<VertexTriangles> vertex_triangles_;
   bool leaves_out_inert_ = false;  // `vertex_triangles_` does
-  std::optional<VertexTriangles> neighbours_;
   std::optional<Orientation> orientation_;
   std::uint64_t oriented_version_ = 0;  // of the shape
-  bool neighbours_leave_out_inert_ = false;
-  SearchedShapes updated_;  // by the last update
+  SearchedShapes updated_;              // by the last update
   Aabb box_;
   BoundingSphere sphere_;
 };

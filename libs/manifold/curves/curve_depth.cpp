@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "answers/penetration/curve_finder.hpp"
+#include "manifold/curves/curve_finder.hpp"
 
 namespace supple {
 
 /// Appends the vertices that the curve encloses on one side and returns their number.
 std::size_t CurveFinder::enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists) {
-  const SurfaceView& surface = side_b ? input_.b : input_.a;
+  const SurfaceView& surface = surface_of(side_b ? 1 : 0);
   const bool is_one_sided = is_one_sided_[members.front()] != 0;
   if (is_one_sided && side_b) return 0;
   side_.start(surface.around->vertex_count());
@@ -55,8 +55,7 @@ void CurveFinder::link_regions() {
     }
     regions_[side].link(static_cast<std::uint32_t>(first_member_.size() - 1));
   }
-  way_out_.start({input_.a, input_.same_object ? nullptr : input_.queried_a, input_.a_is_solid},
-                 {input_.b, input_.same_object ? nullptr : input_.queried_b, input_.b_is_solid});
+  way_out_.start(*input_.a, *input_.b);
 }
 
 /// Finds bodies that only touch: the plane of a face is between their triangles, and nothing is inside.
@@ -119,7 +118,7 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
     for (const Vec3d& p : regions_[side].middles()) way_out_.add_probe(side, p);
   }
 
-  if (input_.a_is_solid && input_.b_is_solid && !input_.same_object) add_common_points(members);
+  if (input_.a->is_solid && input_.b->is_solid && !input_.same_object()) add_common_points(members);
 
   list_face_normals(members, false);
   if (directions_.empty()) list_face_normals(members, true);

@@ -1,4 +1,4 @@
-#include "answers/penetration/contact_regions.hpp"
+#include "manifold/curves/contact_regions.hpp"
 
 #include <algorithm>
 #include <tuple>

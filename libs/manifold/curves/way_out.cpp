@@ -1,4 +1,4 @@
-#include "answers/penetration/way_out.hpp"
+#include "manifold/curves/way_out.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,14 +22,14 @@ bool is_before(const Vec3d& p, const Vec3d& q) {
          std::tuple(rounded(p.x), rounded(p.y), rounded(p.z));
 }
 
-void WayOut::start(const Body& a, const Body& b) {
-  bodies_ = {a, b};
+void WayOut::start(const PenetratedObject& a, const PenetratedObject& b) {
+  bodies_ = {&a, &b};
   for (std::size_t side = 0; side < 2; ++side) {
     queries_[side].start();
     for (const std::uint32_t t : triangles_[side]) is_listed_[side][t] = 0;
     triangles_[side].clear();
     is_listed_[side].resize(
-        std::max(is_listed_[side].size(), bodies_[side].surface.octree->triangles().size()), 0);
+        std::max(is_listed_[side].size(), bodies_[side]->surface.octree->triangles().size()), 0);
   }
 }
 
@@ -53,7 +53,7 @@ void WayOut::add_triangle(std::size_t side, std::uint32_t triangle) {
 }
 
 TrianglePoints WayOut::scaled_corners(std::size_t side, std::uint32_t triangle) const {
-  TrianglePoints corners = bodies_[side].surface.corners(triangle);
+  TrianglePoints corners = bodies_[side]->surface.corners(triangle);
   for (Vec3d& p : corners) p = scale_ * p - origin_;
   return corners;
 }
@@ -78,9 +78,9 @@ void WayOut::choose_probes(std::size_t side) {
 /// not meet its surface from inside. The triangle that it meets becomes one of the parts. A point that is
 /// known to be inside also leaves where it meets an edge of which the first triangle is parallel to the ray.
 double WayOut::cast(std::size_t side, const Vec3d& point, const Vec3d& normal, bool is_inside) {
-  const Body& other = bodies_[1 - side];
+  const PenetratedObject& other = *bodies_[1 - side];
   const Vec3d direction = side == 0 ? normal : Vec3d{} - normal;
-  const auto hit = queries_[1 - side].cast(std::span(other.queried, 1), {point, direction}, false);
+  const auto hit = queries_[1 - side].cast(std::span(&other.queried, 1), {point, direction}, false);
   if (!hit) return -1;
   const double outwards = dot(unit_normal(other.surface.corners(hit->triangle)), direction);
   if (!(is_inside ? outwards >= 0 : outwards > 0)) return -1;
@@ -96,7 +96,7 @@ double WayOut::cast(std::size_t side, const Vec3d& point, const Vec3d& normal, b
 WayOut::Tried WayOut::try_along(const Vec3d& normal, double limit) {
   double way = parts_.way_along(normal, limit * equal), depth = way == none ? -1 : way;
   std::size_t part_count = triangle_count();
-  for (std::size_t side = 0; side < 2 && bodies_[0].queried != nullptr && depth <= limit * equal; ++side) {
+  for (std::size_t side = 0; side < 2 && casts_rays() && depth <= limit * equal; ++side) {
     for (const Vec3d& probe : probes_[side]) {
       if (way != none && parts_.is_covered(side, scale_ * probe - origin_, way)) continue;
       const double exit = cast(side, probe, normal, true);
@@ -153,7 +153,7 @@ bool WayOut::add_other_sides(const Vec3d& normal, const CurveParts::Ends& ends) 
   for (std::size_t side = 0; side < 2; ++side) {
     const TrianglePoints own = scaled_corners(side, ends[side]);
     const double sign = side == 0 ? -1 : 1;
-    if (!bodies_[side].is_solid || sign * dot(unit_normal(own), normal) > -upright) continue;
+    if (!bodies_[side]->is_solid || sign * dot(unit_normal(own), normal) > -upright) continue;
     const auto middle = parts_.middle_of(own, scaled_corners(1 - side, ends[1 - side]), normal);
     if (middle) cast(1 - side, (1 / scale_) * (*middle + sign * inwards * normal + origin_), normal, true);
   }
@@ -166,8 +166,8 @@ double WayOut::list_beside(const Vec3d& normal, const CurveParts::Ends& ends) {
   double lowest = none, highest = -none;
   for (std::size_t side = 0; side < 2; ++side) {
     around_.clear();
-    for (const std::uint32_t v : bodies_[side].surface.triangle(ends[side])) {
-      const auto around = bodies_[side].surface.around->around(v);
+    for (const std::uint32_t v : bodies_[side]->surface.triangle(ends[side])) {
+      const auto around = bodies_[side]->surface.around->around(v);
       around_.insert(around_.end(), around.begin(), around.end());
     }
     sort_once(around_);
@@ -189,7 +189,7 @@ double WayOut::list_beside(const Vec3d& normal, const CurveParts::Ends& ends) {
 /// convex bodies, their distance along the normal is concave, so this finds their largest one.
 double WayOut::depth_of_surfaces(const Tried& tried) {
   const Vec3d& normal = tried.way.normal;
-  if (bodies_[0].queried == nullptr) return tried.way.depth;
+  if (!casts_rays()) return tried.way.depth;
   double longest = tried.longest == none ? -none : tried.longest;
   CurveParts::Ends ends = tried.ends;
   const auto least = [&] { return longest * equal + CurveParts::rounding; };
@@ -213,7 +213,7 @@ double WayOut::depth_of_surfaces(const Tried& tried) {
 /// one. `parts` is how many of them may follow, before rounding decides.
 double WayOut::depth_without_return(const Way& way, int& parts) {
   double depth = way.depth;
-  bool is_free = bodies_[0].queried == nullptr;
+  bool is_free = !casts_rays();
   for (; parts > 0 && !is_free; --parts) {
     is_free = true;
     for (std::size_t side = 0; side < 2; ++side) {
@@ -224,7 +224,7 @@ double WayOut::depth_without_return(const Way& way, int& parts) {
         Aabb box;
         extend(box, place);
         const double exit =
-            overlap(bodies_[1 - side].queried->box, box) ? cast(side, place, way.normal, false) : -1;
+            overlap(bodies_[1 - side]->queried.box, box) ? cast(side, place, way.normal, false) : -1;
         if (exit <= 0) continue;  // on the surface, it is not inside
         depth = moved + exit;
         is_free = false;

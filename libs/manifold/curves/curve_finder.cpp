@@ -1,4 +1,4 @@
-#include "answers/penetration/curve_finder.hpp"
+#include "manifold/curves/curve_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,9 @@
 namespace supple {
 namespace {
 
+/// Without negative zeros.
 Vec3d unit_or_zero(const Vec3d& v) {
-  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  if (!(largest > 0 && std::isfinite(largest))) return {};
-  const Vec3d scaled{v.x / largest, v.y / largest, v.z / largest};
-  return (1 / std::sqrt(dot(scaled, scaled))) * scaled + Vec3d{};
+  return normalized(v) + Vec3d{};
 }
 
 }  // namespace
@@ -31,8 +29,8 @@ void CurveFinder::find(const CurveInput& input, CurveLists& lists) {
   link_regions();
   face_normals_.clear();
   for (const Contact& of_pair : contacts_)
-    face_normals_.push_back({unit_normal(input_.a.corners(of_pair.triangle_a)),
-                             unit_normal(input_.b.corners(of_pair.triangle_b))});
+    face_normals_.push_back({unit_normal(surface_of(0).corners(of_pair.triangle_a)),
+                             unit_normal(surface_of(1).corners(of_pair.triangle_b))});
   for (std::size_t c = 0; c + 1 < first_member_.size(); ++c)
     add_curve(std::span(members_).subspan(first_member_[c], first_member_[c + 1] - first_member_[c]), lists);
 }
@@ -42,13 +40,13 @@ void CurveFinder::link_contacts() {
   const auto count = static_cast<std::uint32_t>(contacts_.size());
   links_.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Triangle &a = input_.a.triangle(contact(i).triangle_a),
-                   &b = input_.b.triangle(contact(i).triangle_b);
+    const Triangle &a = surface_of(0).triangle(contact(i).triangle_a),
+                   &b = surface_of(1).triangle(contact(i).triangle_b);
     for (std::uint32_t k = 0; k < contact(i).point_count; ++k) {
       const std::uint32_t place = first_place(i) + k;
       Link link{name_of(points_[place].on_a, a, contact(i).triangle_a),
                 name_of(points_[place].on_b, b, contact(i).triangle_b), i, place};
-      if (input_.same_object && link.b < link.a) {
+      if (input_.same_object() && link.b < link.a) {
         std::swap(link.a, link.b);
         link.is_swapped = true;
       }
@@ -177,7 +175,7 @@ void CurveFinder::add_curve(std::span<const std::uint32_t> members, CurveLists& 
   const std::uint32_t number = curve_of_[members.front()];
   for (std::size_t side = 0; side < 2; ++side) {
     ContactRegions& region = regions_[side];
-    const bool other_is_solid = !input_.same_object && (side == 0 ? input_.b_is_solid : input_.a_is_solid);
+    const bool other_is_solid = !input_.same_object() && (side == 0 ? input_.b : input_.a)->is_solid;
     region.begin(number);
     // Contacts at corners of the other surface may tell nothing.
     for (std::size_t i = 0; i < n && other_is_solid && region.inside().empty(); ++i) {
@@ -249,8 +247,8 @@ bool CurveFinder::only_touches(std::uint32_t i) const {
       return orient3d(q[0], q[1], q[2], corner, used_exact) >= 0;
     });
   };
-  const TrianglePoints a = input_.a.corners(contact(i).triangle_a),
-                       b = input_.b.corners(contact(i).triangle_b);
+  const TrianglePoints a = surface_of(0).corners(contact(i).triangle_a),
+                       b = surface_of(1).corners(contact(i).triangle_b);
   return is_outside(a, b) || is_outside(b, a);
 }
 
@@ -268,7 +266,7 @@ bool CurveFinder::separates(std::size_t side, std::uint32_t face,
       if (of == side ? height > 0 : height < 0) return false;
       is_in_plane = is_in_plane && height == 0;
     }
-    return of == side || !is_in_plane || !input_.a_is_solid || !input_.b_is_solid ||
+    return of == side || !is_in_plane || !input_.a->is_solid || !input_.b->is_solid ||
            dot(unit_normal(plane), unit_normal(corners)) <= 0;
   };
   return std::all_of(members.begin(), members.end(),

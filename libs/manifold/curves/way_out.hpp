@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "answers/penetration/curve_parts.hpp"
-#include "answers/penetration/surface_view.hpp"
+#include "answers/penetration/manifold_methods.hpp"
+#include "manifold/curves/curve_parts.hpp"
 #include "queries/object_queries.hpp"
 
 namespace supple {
@@ -31,18 +31,12 @@ class WayOut {
  public:
   static constexpr double none = CurveParts::nothing_ahead;
 
-  /// A surface, and the object for rays; null within one object, where no rays are cast.
-  struct Body {
-    SurfaceView surface;
-    const QueriedObject* queried = nullptr;
-    bool is_solid = false;
-  };
-  /// Starts another pair of bodies, a and b.
-  void start(const Body& a, const Body& b);
+  /// Starts another pair of bodies, which must live until the next one. Within one object, no rays are cast.
+  void start(const PenetratedObject& a, const PenetratedObject& b);
 
   /// Whether a point is inside a body, which is solid.
   bool contains(std::size_t side, const Vec3d& point) {
-    return queries_[side].inside(0, *bodies_[side].queried, point) == Containment::inside;
+    return queries_[side].inside(0, bodies_[side]->queried, point) == Containment::inside;
   }
 
   /// Starts another curve. Lengths are `scale` times those of the user, a power of two, and positions of
@@ -74,6 +68,7 @@ class WayOut {
   };
 
   std::size_t triangle_count() const { return triangles_[0].size() + triangles_[1].size(); }
+  bool casts_rays() const { return bodies_[0] != bodies_[1]; }
   void choose_probes(std::size_t side);
   Tried try_along(const Vec3d& normal, double limit);
   double cast(std::size_t side, const Vec3d& point, const Vec3d& normal, bool is_inside);
@@ -85,7 +80,7 @@ class WayOut {
   double depth_without_return(const Way& way, int& parts);
   double least_depth() const;
 
-  std::array<Body, 2> bodies_;
+  std::array<const PenetratedObject*, 2> bodies_{};
   std::array<ObjectQueries, 2> queries_;  // rays that meet a body
   double scale_ = 1;
   Vec3d origin_;

@@ -1,4 +1,4 @@
-#include "answers/penetration/curve_parts.hpp"
+#include "manifold/curves/curve_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -116,10 +116,7 @@ double way_between(const TrianglePoints& a, const TrianglePoints& b) {
 }  // namespace
 
 void CurveParts::look_along(const Vec3d& normal) {
-  const Vec3d size = absolute(normal);
-  const bool x_is_least = size.x <= size.y && size.x <= size.z;
-  const Vec3d axis = x_is_least ? Vec3d{1, 0, 0} : size.y <= size.z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-  const Vec3d across = cross(normal, axis), u = across / norm(across), v = cross(normal, u);
+  const Vec3d across = cross(normal, shortest_axis(normal)), u = across / norm(across), v = cross(normal, u);
   axes_ = {u, v, normal};
 }
 

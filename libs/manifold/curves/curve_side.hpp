@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "answers/penetration/parity_sets.hpp"
 #include "answers/penetration/surface_view.hpp"
+#include "manifold/curves/parity_sets.hpp"
 #include "supple/mesh.hpp"
 #include "supple/types.hpp"
 

@@ -1,4 +1,4 @@
-#include "answers/penetration/curve_side.hpp"
+#include "manifold/curves/curve_side.hpp"
 
 #include <algorithm>
 #include <numeric>

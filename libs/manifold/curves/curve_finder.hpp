@@ -4,15 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
-#include "answers/penetration/contact_regions.hpp"
-#include "answers/penetration/curve_side.hpp"
-#include "answers/penetration/parity_sets.hpp"
-#include "answers/penetration/surface_view.hpp"
-#include "answers/penetration/way_out.hpp"
+#include "answers/penetration/manifold_methods.hpp"
+#include "manifold/curves/contact_regions.hpp"
+#include "manifold/curves/curve_side.hpp"
+#include "manifold/curves/parity_sets.hpp"
+#include "manifold/curves/way_out.hpp"
 #include "queries/feature_name.hpp"
 #include "supple/penetration.hpp"
 #include "supple/result.hpp"
@@ -25,46 +24,10 @@ inline double scale_of(double largest) {
   return std::ldexp(1.0, -std::clamp(largest > 0 ? std::ilogb(largest) : 0, -1000, 1023));
 }
 
-/// The value before scaling, at most the largest double.
-inline double restored(double scaled, double scale) {
-  constexpr double most = std::numeric_limits<double>::max();
-  return std::clamp(scaled / scale, -most, most);
-}
-inline Vec3d restored(const Vec3d& scaled, double scale) {
-  return {restored(scaled.x, scale), restored(scaled.y, scale), restored(scaled.z, scale)};
-}
-
-/// Curves with the lists that they refer to.
-struct CurveLists {
-  std::vector<IntersectionCurve> curves;
-  std::vector<std::uint32_t> contacts;
-  std::vector<Vec3d> points;
-  std::vector<std::uint32_t> enclosed;
-
-  void clear() {
-    curves.clear();
-    contacts.clear();
-    points.clear();
-    enclosed.clear();
-  }
-};
-
-/// The contacts of two objects, or of one object with itself.
-struct CurveInput {
-  SurfaceView a, b;
-  const QueriedObject *queried_a = nullptr, *queried_b = nullptr;
-  bool a_is_solid = false, b_is_solid = false;
-  bool same_object = false;
-  const ContactGroup* group = nullptr;
-  const DetectResult* result = nullptr;  ///< with the contacts of the group, and their points
-};
-
 /// Links contacts to curves. Holds the memory of one worker.
-class CurveFinder {
+class CurveFinder : public CurveMaker {
  public:
-  /// Appends the curves of a group, ordered by their smallest contacts. O(n log n) for n contacts, and the
-  /// vertices that each curve encloses.
-  void find(const CurveInput& input, CurveLists& lists);
+  void find(const CurveInput& input, CurveLists& lists) override;
   /// The work of the last `find`: vertices and triangles that it read for all curves.
   std::size_t visited() const { return visited_; }
 
@@ -100,7 +63,7 @@ class CurveFinder {
   void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
 
-  const SurfaceView& surface_of(std::size_t side) const { return side == 0 ? input_.a : input_.b; }
+  const SurfaceView& surface_of(std::size_t side) const { return (side == 0 ? input_.a : input_.b)->surface; }
   const Contact& contact(std::uint32_t i) const { return contacts_[i]; }
   std::uint32_t first_place(std::uint32_t i) const {
     return contacts_[i].first_point - contacts_[0].first_point;
