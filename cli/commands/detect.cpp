@@ -69,7 +69,7 @@ Input read_input(const DetectOptions& options, Ranks& ranks) {
   check_output_names({{"--json", options.json}, {"--csv", options.csv}}, input.files);
   apply(options, input);
   if (ranks.rank() == 0) print_notes(input);
-  if (is_one_mesh(options.inputs, input) && has_proximity(options.scene))
+  if (is_one_mesh(options.inputs, input) && has_margins(options.scene))
     input.objects.front().options.self_collision = true;
   ranks.check(options, input);
   return input;

@@ -137,7 +137,7 @@ void add_detection_options(CLI::App& app, MethodOptions& options, Dependences& d
        [&options] { return is_at_rest(options.scene); }, "--contacts intersection or none"});
   add_object_options(app, options.given_objects, true);
   add_parts(app, options.parts, "Detection");
-  dependences.push_back({app.get_option("--margin"), [&options] { return has_proximity(options.scene); },
+  dependences.push_back({app.get_option("--margin"), [&options] { return has_margins(options.scene); },
                          "--contacts proximity"});
   dependences.push_back({app.get_option("--neighbours"),
                          [&options] { return has_intersections(options.scene); }, "--contacts intersection"});

@@ -33,7 +33,7 @@ bool finds(const SceneOptions& scene) {
 }
 inline constexpr auto has_intersections = finds<ContactKinds::intersection>;
 inline constexpr auto has_continuous = finds<ContactKinds::continuous>;
-inline constexpr auto has_proximity = finds<ContactKinds::proximity>;
+inline constexpr auto has_margins = finds<ContactKinds::proximity>;
 inline constexpr auto has_penetration = finds<ContactKinds::penetration>;
 bool has_spheres(const SceneOptions& scene);
 
