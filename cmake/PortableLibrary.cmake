@@ -2,7 +2,8 @@
 # and threads.
 set(supple_root ${CMAKE_CURRENT_LIST_DIR}/..)
 file(GLOB_RECURSE supple_portable_sources CONFIGURE_DEPENDS ${supple_root}/src/supple/*.cpp
-  ${supple_root}/libs/inspect/*.cpp ${supple_root}/libs/comparison/*.cpp ${supple_root}/libs/manifold/*.cpp
+  ${supple_root}/libs/describe/*.cpp ${supple_root}/libs/inspect/*.cpp ${supple_root}/libs/comparison/*.cpp
+  ${supple_root}/libs/manifold/*.cpp
   ${supple_root}/models/src/*.cpp ${supple_root}/simulation/src/*.cpp)
 
 # Adds the folders of the library's headers, and symbolic links to the header folders LIBRARY... only: the other
@@ -17,8 +18,8 @@ function(supple_use_portable_library target)
   endforeach()
   target_include_directories(${target} SYSTEM PRIVATE ${headers})
   target_include_directories(${target} PRIVATE ${supple_root}/include ${supple_root}/src/supple
-    ${supple_root}/libs/inspect/include ${supple_root}/libs/comparison/include
-    ${supple_root}/libs/manifold/include ${supple_root}/libs
+    ${supple_root}/libs/describe/include ${supple_root}/libs/inspect/include
+    ${supple_root}/libs/comparison/include ${supple_root}/libs/manifold/include ${supple_root}/libs
     ${supple_root}/models/include ${supple_root}/models/src
     ${supple_root}/simulation/include ${supple_root}/simulation/src)
   target_compile_definitions(${target} PRIVATE SUPPLE_SERIAL

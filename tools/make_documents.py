@@ -15,8 +15,6 @@ import sys
 
 # In the order of the enumerations of C++.
 SCALARS = ("uint8", "uint8", "uint32", "uint64", "float64")
-SECTION_SCALARS = ("u8", "u32", "f32", "f64")
-SECTION_ARRAYS = ("Uint8Array", "Uint32Array", "Float32Array", "Float64Array")
 NOTHING, OBJECT, TRIANGLE, VERTEX, ELEMENT, WEIGHTS, ROWS, FIRST_ROW = range(8)  # Names
 FEATURE = 2  # FieldInfo::Kind
 VIEW_KINDS = ("number", "whole", "truth", "word", "colour", "text", "key", "point", "interval", "objects")
@@ -128,37 +126,38 @@ def csv_rows(kinds):
 # --- The viewer
 
 
-def kinds_of(section, program):
-    return [name for i, name in enumerate(program["message_kinds"]) if i > 0 and int(section["kinds"]) >> i & 1]
-
-
 def section_rows(program):
     for section in program["sections"]:
-        width = {"1": "", "0": " × names"}.get(section["width"], " × " + section["width"])
+        scalars = {0: "", 1: section["scalar"] + ": "}.get(section["width"], f"{section['scalar']} × {section['width']}: ")
         per_object = "; one per object" if section["is_of_object"] else ""
-        yield (f"| {section['tag']} | `{section['name']}` | {SECTION_SCALARS[section['scalar']]}{width}: {section['element']} | "
-               f"{', '.join(kinds_of(section, program))}{per_object}{section['when'] and '; ' + section['when']} |")
+        yield (f"| {section['tag']} | `{section['name']}` | {scalars}{section['element']} | "
+               f"{', '.join(section['kinds'])}{per_object}{section['when'] and '; ' + section['when']} |")
 
 
 def field_rows(fields):
     for field in fields:
-        of = f"contact, in `{field['section']}`" if field["section"] else field["of"]
+        of = f"contact, in `{field['list']}`" if field["list"] else field["of"]
         yield f"| `{field['key']}` | {of}{', a vector' if field['is_vector'] else ''} | {field['unit']} | {field['doc']} |"
 
 
 def lines_of_sections(program):
     yield f" = {json.dumps(program['message_kinds'])} as const;\n\nexport const FORMS = {{\n"
     for section in program["sections"]:
-        yield (f"  {section['tag']}: {{ name: \"{section['name']}\", array: {SECTION_ARRAYS[section['scalar']]}, "
-               f"width: {section['width']}, kinds: {json.dumps(kinds_of(section, program))}, "
-               f"perObject: {json.dumps(section['is_of_object'])} }},\n")
+        form = {name: section[name] for name in ("name", "scalar", "width", "is_of_object", "kinds")}
+        yield f"  {section['tag']}: {json.dumps(form)},\n"
 
 
-def lines_of_view_members(members):
-    for member in members:
-        low, high = (member[end].replace("inf", "Infinity") for end in ("low", "high"))
-        yield (f"  {{ path: \"{member['path']}\", kind: \"{VIEW_KINDS[member['kind']]}\", range: \"{member['range']}\", "
-               f"low: {low}, high: {high}, above: {json.dumps(member['above'])}, words: {json.dumps(member['words'].split())} }},\n")
+def members_of_views(members):
+    """By their path; there is no JSON for infinity."""
+    return {member["path"]: {"kind": VIEW_KINDS[member["kind"]], "range": member["range"], "above": member["above"],
+                             "words": member["words"].split(),
+                             **{end: None if "inf" in member[end] else float(member[end]) for end in ("low", "high")}}
+            for member in members}
+
+
+def as_lines(named):
+    """JSON with a line for each member."""
+    return "{\n" + ",\n".join(f" {json.dumps(name)}: {json.dumps(value)}" for name, value in named.items()) + "\n}\n"
 
 
 def replaced_lines(path, first, lines, last):
@@ -343,15 +342,16 @@ def filled(document, tables):
 def main():
     # Numbers stay as they are spelled, but those that stand for words.
     program = json.load(sys.stdin, parse_int=str, parse_float=str, object_hook=lambda members: {
-        key: int(value) if key in ("kind", "scalar", "names") and isinstance(value, str) and value.isdigit() else value
+        key: int(value) if key in ("kind", "scalar", "names", "width") and isinstance(value, str) and value.isdigit() else value
         for key, value in members.items()})
     shared = prepare_options(program["commands"])
     if sys.argv[1] == "--man":
         return print(manual(program, shared), end="")
-    sections, members = (f"viewer/page/src/protocol/{name}.ts" for name in ("sections", "view_members"))
+    protocol, sections = "viewer/page/src/protocol/", "viewer/page/src/protocol/sections_generated.ts"
     files = {"docs/cli.md": markdown(program, shared),
-             sections: replaced_lines(sections, "export const KINDS", lines_of_sections(program), "} as const"),
-             members: replaced_lines(members, "ViewMember[] = [\n", lines_of_view_members(program["view_members"]), "];\n")}
+             sections: replaced_lines(sections, "export const KINDS", lines_of_sections(program), "} as const satisfies"),
+             protocol + "lists_generated.json": as_lines({each.pop("name"): each for each in program["lists_of_frames"]}),
+             protocol + "view_members_generated.json": as_lines(members_of_views(program["view_members"]))}
     tables = tables_of(program)
     for document in [*pathlib.Path("docs").glob("*.md"), *pathlib.Path("viewer").glob("*.md")]:
         if "\n<!-- begin " in document.read_text():

@@ -32,7 +32,7 @@ std::string name_of(const Scene& scene, ObjectId object);
 std::string name_of(Feature feature);
 /// `edge 3 5`, `face 7`.
 std::string element_name(FeatureKind kind, const std::array<std::uint32_t, 2>& ids);
-/// The kinds of the two sides of a proximity pair, as in JSON and CSV: `vf`, `ee` and so on.
+/// The kinds of the two elements of a pair, as in JSON and CSV: `vf`, `ee` and so on.
 std::string kind_word(FeatureKind a, FeatureKind b);
 
 /// The most likely intended word for a mistyped word, or nothing when no word is similar.

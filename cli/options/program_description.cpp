@@ -6,6 +6,7 @@
 #include "base/json_writer.hpp"
 #include "reports/reports.hpp"
 #include "session/fields/field_forms.hpp"
+#include "session/lists/lists_of_frames.hpp"
 #include "session/messages/described_json.hpp"
 #include "session/messages/sections.hpp"
 #include "session/program/attach_descriptions.hpp"
@@ -138,17 +139,18 @@ void write_viewer(JsonWriter& json) {
   json.objects("sections", viewer::section_forms, [&](const viewer::SectionForm& form) {
     json.member("tag", static_cast<std::uint32_t>(form.tag));
     json.member("name", form.name);
-    json.member("scalar", static_cast<std::uint32_t>(form.scalar));
+    json.member("scalar", viewer::names_of_scalars[static_cast<std::size_t>(form.scalar)]);
     json.member("width", form.width);
-    json.member("kinds", std::uint64_t{form.kinds});
+    json.list("kinds", viewer::kinds_of(form));
     json.member("is_of_object", form.is_of_object);
     json.member("element", form.element);
     json.member("when", form.when);
   });
+  viewer::describe_lists_of_frames(json);
   json.objects("fields", viewer::built_in_fields(), [&](const viewer::FieldForm& form) {
     json.member("key", form.key);
     json.member("of", word_of(form.element));
-    json.member("section", form.section);
+    json.member("list", form.list);
     json.member("is_vector", form.is_vector);
     json.member("unit", form.unit);
     json.member("doc", form.doc);

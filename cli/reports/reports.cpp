@@ -33,22 +33,19 @@ constexpr std::array outcomes_of_vertices{
     "was reported as inside or on the surface of it and is not",
     "was reported with a triangle that is not the nearest or with an inaccurate depth"};
 
-std::string describe(const Input& input, const auto& d, std::array<FeatureKind, 2> kinds,
-                     const auto& outcomes) {
+/// Of two elements.
+std::string describe(const Input& input, const auto& d) {
   const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
     return fmt::format("{} of {}", element_name(kind, ids), one_line(input.name(object)));
   };
-  return fmt::format("{} and {} {}", named(kinds[0], d.element_a, d.object_a),
-                     named(kinds[1], d.element_b, d.object_b), outcomes[static_cast<std::size_t>(d.fault)]);
-}
-
-std::string describe(const Input& input, const ContinuousDifference& d) {
-  const auto [kind_a, kind_b] = feature_kinds(d.kind);
-  return describe(input, d, {kind_a, kind_b}, outcomes_of_impacts);
-}
-
-std::string describe(const Input& input, const ProximityDifference& d) {
-  return describe(input, d, {d.kind_a, d.kind_b}, outcomes_of_pairs);
+  const auto described = [&](FeatureKind a, FeatureKind b, const auto& outcomes) {
+    return fmt::format("{} and {} {}", named(a, d.element_a, d.object_a), named(b, d.element_b, d.object_b),
+                       outcomes[static_cast<std::size_t>(d.fault)]);
+  };
+  if constexpr (requires { d.kind_a; })
+    return described(d.kind_a, d.kind_b, outcomes_of_pairs);
+  else
+    return described(feature_kinds(d.kind)[0], feature_kinds(d.kind)[1], outcomes_of_impacts);
 }
 
 std::string describe(const Input& input, const PenetrationDifference& d) {

@@ -20,6 +20,7 @@
 #include "session/messages/long_steps.hpp"
 #include "supple/distributed.hpp"
 #include "supple/error.hpp"
+#include "supple/result_lists.hpp"
 
 namespace supple::cli {
 namespace {
@@ -225,14 +226,14 @@ class DistributedObjects : public MovingObjects {
   void fetch_positions() {
     if (moves_all_) return;
     std::vector<std::uint8_t> is_wanted(input_.objects.size(), 0);
-    const auto want = [&](std::span<const ContactGroup> groups) {
-      for (const ContactGroup& group : groups) {
-        if (group.a == group.b && input_.objects[group.a.index].motion) is_wanted[group.a.index] = 1;
+    for_each_list([&]<class Row>(const ResultList<Row>&, auto member) {
+      if constexpr (requires(const Row& row) { row.object_b; }) {
+        for (const Row& row : member(result_)) {
+          const std::uint32_t object = row.object_a.index;
+          if (row.object_a == row.object_b && input_.objects[object].motion) is_wanted[object] = 1;
+        }
       }
-    };
-    want(result_.groups);
-    want(result_.continuous_groups);
-    want(result_.proximity_groups);
+    });
     MPI_Bcast(is_wanted.data(), static_cast<int>(is_wanted.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
     for (int owner = 1; owner < ranks_.size(); ++owner) {
       for (std::uint32_t i = first_of(owner); i < first_of(owner + 1); ++i) {

@@ -28,7 +28,7 @@ class ViewerMessage {
   explicit ViewerMessage(std::span<const std::byte> bytes) {
     require(bytes.size() >= 16 && reinterpret_cast<std::uintptr_t>(bytes.data()) % 16 == 0, "header");
     require(word(bytes, 0) == 0x4c505553, "magic number");
-    require((word(bytes, 4) & 0xffff) == 1, "version");
+    require((word(bytes, 4) & 0xffff) == 2, "version");
     kind = static_cast<Kind>(word(bytes, 4) >> 16);
     require(word(bytes, 8) == bytes.size() && bytes.size() % 16 == 0, "length");
     std::size_t place = 16;

@@ -4,13 +4,16 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "session/lists/lists_of_frames.hpp"
 #include "session/scene_view.hpp"
 #include "session/session.hpp"
 #include "supple/models.hpp"
@@ -22,9 +25,7 @@ namespace supple::viewer {
 
 using Json = nlohmann::json;
 /// Types of the elements in sections.
-using Pair = std::array<std::uint32_t, 2>;
 using StepPair = std::array<std::uint32_t, 3>;
-using Ids = std::array<std::uint32_t, 8>;
 using Row = std::array<float, 8>;
 
 /// A page without a network. It sends commands to the session and reads its messages.
@@ -161,23 +162,77 @@ inline std::vector<Vec3f> as_floats(std::span<const Vec3d> positions, Vec3d cent
   return floats;
 }
 
+/// The number of the section of a column; the first one of the list without a name.
+inline std::uint32_t section_of(std::string_view name, std::string_view column = "") {
+  std::uint32_t number = 0;
+  for (const ListOfFrames& list : lists_of_frames()) {
+    for (const Column& each : list.columns) {
+      if (name == list.info->name && (column.empty() || column == each.name)) return number;
+      ++number;
+    }
+  }
+  throw std::runtime_error("no column " + std::string(column) + " of " + std::string(name));
+}
+/// The column of a list in a frame. Empty when the list is.
+template <class Value>
+std::vector<Value> column_of(const ViewerMessage& frame, std::string_view list, std::string_view name) {
+  const std::uint32_t section = section_of(list, name);
+  return frame.has(33, section) ? frame.values<Value>(33, section) : std::vector<Value>{};
+}
+inline std::uint32_t count_of(const ViewerMessage& frame, std::string_view list) {
+  return frame.has(33, section_of(list)) ? frame.section(33, section_of(list)).count : 0;
+}
+/// Object and triangle of both sides of each contact.
+inline std::vector<std::array<std::uint32_t, 4>> contacts_in(const ViewerMessage& frame) {
+  std::vector<std::array<std::uint32_t, 4>> contacts(count_of(frame, "contacts"));
+  std::size_t place = 0;
+  for (const char* name : {"object_a", "triangle_a", "object_b", "triangle_b"}) {
+    const auto column = column_of<std::uint32_t>(frame, "contacts", name);
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i][place] = column[i];
+    ++place;
+  }
+  return contacts;
+}
+/// All columns of all lists.
+inline std::map<std::uint32_t, std::vector<std::byte>> columns_of(const ViewerMessage& frame) {
+  std::map<std::uint32_t, std::vector<std::byte>> found;
+  for (const auto& [key, section] : frame.sections) {
+    if (key.first == 33) found[key.second] = section.data;
+  }
+  return found;
+}
+
+/// Expects that the rows of a list in a frame are those of the library, member by member.
+template <class Row>
+void expect_rows(const ViewerMessage& frame, const char* name, std::span<const Row> expected, Vec3d center) {
+  ASSERT_EQ(count_of(frame, name), expected.size());
+  const ListOfFrames& list = lists_of_frames()[place_of_list(name)];
+  for (const Column& column : list.columns) {
+    const auto expect = [&](const auto& sent, const auto& member) {
+      for (std::size_t i = 0; i < sent.size(); ++i) {
+        const auto* const row = reinterpret_cast<const std::byte*>(&expected[i / column.width]);
+        ASSERT_EQ(sent[i], member(row, i % column.width)) << name << " " << column.name;
+      }
+    };
+    const auto whole = [&](const std::byte* row, std::size_t k) { return number_of(*column.field, row, k); };
+    const auto real = [&](const std::byte* row, std::size_t k) {
+      const double origin = !column.is_position ? 0 : k == 0 ? center.x : k == 1 ? center.y : center.z;
+      return static_cast<float>(real_number(*column.field, row, k) - origin);
+    };
+    if (column.scalar == ScalarOfSection::float32)
+      expect(column_of<float>(frame, name, column.name), real);
+    else if (column.scalar == ScalarOfSection::uint32)
+      expect(column_of<std::uint32_t>(frame, name, column.name), whole);
+    else
+      expect(column_of<std::uint8_t>(frame, name, column.name), whole);
+  }
+}
+
 /// Expects that the contacts and contact points of a frame equal those of the library.
 inline void expect_contacts(const ViewerMessage& frame, const DetectResult& result, Vec3d center) {
-  std::vector<Ids> contacts;
-  for (const Contact& c : result.contacts)
-    contacts.push_back({c.object_a.index, c.triangle_a, c.object_b.index, c.triangle_b,
-                        static_cast<std::uint32_t>(c.kind), c.point_count, c.first_point, 0});
-  EXPECT_EQ(frame.values<Ids>(34), contacts);
-  std::vector<Vec3d> points;
-  for (const ContactPoint& point : result.contact_points) points.push_back(point.position);
-  const std::vector<Vec3f> expected = as_floats(points, center);
-  const std::vector<Row> sent = frame.has(35) ? frame.values<Row>(35) : std::vector<Row>{};
-  ASSERT_EQ(sent.size(), expected.size());
-  for (std::size_t i = 0; i < sent.size(); ++i)
-    EXPECT_EQ((Vec3f{sent[i][0], sent[i][1], sent[i][2]}), expected[i]);
-  std::vector<Pair> pairs;
-  for (const ObjectPair& pair : result.object_pairs) pairs.push_back({pair.a.index, pair.b.index});
-  EXPECT_EQ(frame.values<Pair>(33), pairs);
+  expect_rows(frame, "contacts", result.contacts, center);
+  expect_rows(frame, "contact_points", result.contact_points, center);
+  expect_rows(frame, "object_pairs", result.object_pairs, center);
 }
 
 }  // namespace supple::viewer

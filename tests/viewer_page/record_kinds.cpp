@@ -10,9 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "lists/lists_of_frames.hpp"
 #include "session.hpp"
 #include "supple/inspection_descriptions.hpp"
 #include "supple/models.hpp"
@@ -67,10 +69,10 @@ std::vector<TriangleMesh> intersecting() {
 class Kinds {
  public:
   void add(const ViewerMessage& frame) {
-    add(frame, 34, 4, "contact");
-    add(frame, 36, 6, "impact");
-    add(frame, 36, 7, "certainty");
-    add(frame, 58, 2, "curve");
+    add(frame, "contacts", "kind", "contact");
+    add(frame, "continuous_contacts", "kind", "impact");
+    add(frame, "continuous_contacts", "certainty", "certainty");
+    add(frame, "curves", "kind", "curve");
   }
   template <class Enum>
   bool has_all(const std::string& record) {
@@ -85,10 +87,15 @@ class Kinds {
   }
 
  private:
-  void add(const ViewerMessage& frame, std::uint32_t tag, std::size_t place, const char* record) {
-    if (!frame.has(tag)) return;
-    const auto rows = frame.values<std::uint32_t>(tag);
-    for (std::size_t i = 0; i < rows.size(); i += 8) found_[record].insert(rows[i + place]);
+  void add(const ViewerMessage& frame, std::string_view list, std::string_view name, const char* record) {
+    std::uint32_t number = 0;
+    for (const supple::viewer::ListOfFrames& each : supple::viewer::lists_of_frames()) {
+      for (const supple::viewer::Column& column : each.columns) {
+        const std::uint32_t section = number++;
+        if (list != each.info->name || name != column.name || !frame.has(33, section)) continue;
+        for (const std::uint8_t kind : frame.values<std::uint8_t>(33, section)) found_[record].insert(kind);
+      }
+    }
   }
   std::map<std::string, std::set<std::uint32_t>> found_;
 };

@@ -9,7 +9,8 @@
 namespace supple::viewer {
 
 // What a view file contains. The checks of the program and of the page
-// (viewer/page/src/protocol/view_members.ts) and the table of docs/viewer.md are made from this list.
+// (viewer/page/src/protocol/view_members_generated.json) and the table of docs/viewer.md are made from this
+// list.
 
 enum class ViewValue : std::uint8_t {
   number,
@@ -114,7 +115,7 @@ inline constexpr std::array view_members = std::to_array<ViewMember>({
      "name of an object whose values are shown over time; pins are named 1, 2 and so on"},
     {"pins.*.b", ViewValue::text, "name of the second object of a pair"},
     {"pins.*.contact", ViewValue::text,
-     "only this contact of the pair: the first four numbers of its row in `contacts`, or seven of `impacts` "
+     "only this contact of the pair: its four or seven numbers, as in the command `pins` "
      "(viewer/PROTOCOL.md), with spaces"},
 });
 

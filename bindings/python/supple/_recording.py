@@ -74,7 +74,7 @@ class _Elements:
             kinds = np.full((len(made), 2), FeatureKind.face)
             elements = np.repeat(made["triangle"][:, :, None], 2, axis=2)
         else:
-            kinds = made["kind"] if record == "ProximityPair" else _PAIR_KINDS[made["kind"]]
+            kinds = made["kind"] if made["kind"].ndim == 2 else _PAIR_KINDS[made["kind"]]
             elements = made["element"]
         vertices = np.repeat(elements[:, :, :1], 3, axis=2)
         edges = kinds == FeatureKind.edge

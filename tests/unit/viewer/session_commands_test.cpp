@@ -142,7 +142,7 @@ TEST(ViewerCommands, ReadsVerticesTrianglesAndObjects) {
   EXPECT_EQ(vertex["position"], (Json{ball.positions[9].x, ball.positions[9].y, ball.positions[9].z}));
 
   const ViewerMessage frame = page.frame();
-  const auto contacts = frame.values<Ids>(34);
+  const auto contacts = contacts_in(frame);
   ASSERT_FALSE(contacts.empty());
   const std::uint32_t triangle = contacts.front()[3];
   Json expected = Json::array();

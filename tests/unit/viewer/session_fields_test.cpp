@@ -297,7 +297,7 @@ TEST(ViewerFields, DepthIsTheLargestOfEachVertex) {
   }
 }
 
-TEST(ViewerFields, ContactFieldsNameASectionWithTheirValues) {
+TEST(ViewerFields, ContactFieldsNameTheColumnOfTheirValues) {
   SceneView show = touching_balls();
   show.simulation.scene.contacts = ContactKinds::proximity;
   for (ViewedObject& object : show.objects) object.options.margin = 0.3;
@@ -307,12 +307,12 @@ TEST(ViewerFields, ContactFieldsNameASectionWithTheirValues) {
       std::find_if(fields.begin(), fields.end(), [](const Json& field) { return field["key"] == "gap"; });
   ASSERT_NE(gap, fields.end());
   EXPECT_EQ((*gap)["element"], "contact");
-  EXPECT_EQ((*gap)["section"], "proximity_points");
-  EXPECT_EQ((*gap)["column"], 3);
+  EXPECT_EQ((*gap)["list"], "proximity_pairs");
+  EXPECT_EQ((*gap)["column"], "distance");
   choose(page, "gap");
   const ViewerMessage frame = page.frame();
   EXPECT_FALSE(has_values(frame));
-  EXPECT_GT(frame.values<Row>(55).size(), 0u);
+  EXPECT_GT(column_of<float>(frame, "proximity_pairs", "distance").size(), 0u);
 }
 
 TEST(ViewerFields, ReadAnswersTheValueInDouble) {

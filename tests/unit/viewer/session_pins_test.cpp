@@ -189,18 +189,17 @@ TEST(ViewerPins, AContactIsFollowedWhileItExists) {
   PinnedPage page(meeting_balls(ContactKinds::penetration));
   const ViewerMessage frame = page.frame();
   page.ask({{"do", "pause"}});
-  const auto contacts = frame.values<Ids>(34);
+  const auto contacts = contacts_in(frame);
   ASSERT_FALSE(contacts.empty());
-  const Ids c = contacts.front();
-  page.pin({{{"pin", 1}, {"objects", {c[0], c[2]}}, {"contact", {c[0], c[1], c[2], c[3]}}},
+  const auto c = contacts.front();
+  page.pin({{{"pin", 1}, {"objects", {c[0], c[2]}}, {"contact", c}},
             {{"pin", 2}, {"objects", {c[0], c[2]}}, {"contact", {c[0], c[1], c[2], 0}}}});
   const ViewerMessage pinned = page.frame();
   auto row = page.rows(pinned, 1).at(0);
   EXPECT_EQ(row["contacts"], 1);
   EXPECT_GT(row["length"], 0);
   EXPECT_GT(row["depth"], 0) << "that of its curve";
-  const auto points = frame.values<Row>(35);
-  EXPECT_NEAR(row["normal_x"], points[c[6]][4], 1e-6);
+  EXPECT_NEAR(row["normal_x"], column_of<float>(frame, "contacts", "normal").at(0), 1e-6);
   auto other = page.rows(pinned, 2).at(0);
   EXPECT_EQ(other["contacts"], 0);
   EXPECT_TRUE(std::isnan(other["depth"]));

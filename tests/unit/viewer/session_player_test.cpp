@@ -80,7 +80,7 @@ TEST(ViewerPlayer, ObjectsWithoutMotionArePaused) {
   const ViewerMessage frame = page.frame();
   EXPECT_EQ(frame.json["playing"], false);
   EXPECT_EQ(frame.json["step"], 0);
-  EXPECT_GT(frame.section(34).count, 0u);
+  EXPECT_GT(count_of(frame, "contacts"), 0u);
 }
 
 }  // namespace supple::viewer::session_player_test

@@ -102,7 +102,7 @@ Recorded record(int frames, ContactKinds contacts = ContactKinds::intersection) 
 }
 
 std::size_t contact_count(const ViewerMessage& frame) {
-  return frame.section(34).count;
+  return count_of(frame, "contacts");
 }
 
 /// Returns the first two messages: the scene and the series.
@@ -218,11 +218,11 @@ TEST(ViewerRecording, ContinuousContactsAreThoseOfTheWayFromTheFrameBefore) {
     page.session.advance(0);
     const ViewerMessage frame = page.frame();
     ASSERT_EQ(frame.json["step"], number);
-    ASSERT_EQ(frame.section(36).count, recorded.impacts[number].size()) << number;
-    const auto points = frame.values<std::array<float, 8>>(37);
-    for (std::size_t c = 0; c < points.size(); ++c)
-      EXPECT_EQ(points[c][3], static_cast<float>(recorded.impacts[number][c].toi));
-    most = std::max(most, points.size());
+    ASSERT_EQ(count_of(frame, "continuous_contacts"), recorded.impacts[number].size()) << number;
+    const auto times = column_of<float>(frame, "continuous_contacts", "toi");
+    for (std::size_t c = 0; c < times.size(); ++c)
+      EXPECT_EQ(times[c], static_cast<float>(recorded.impacts[number][c].toi));
+    most = std::max(most, times.size());
   }
   EXPECT_GT(most, 0u);
 }
@@ -323,11 +323,10 @@ TEST(ViewerRecording, ComparedRecordingsDoNotTouchEachOther) {
     const ViewerMessage message = page.frame();
     EXPECT_EQ(contact_count(message), 2 * recorded.contacts[frame].size());
     most = std::max(most, contact_count(message));
-    for (const std::uint32_t tag : {33u, 34u}) {
-      const std::vector<std::uint32_t> ids = message.values<std::uint32_t>(tag);
-      const std::size_t width = tag == 33 ? 2 : 8, second = tag == 33 ? 1 : 2;
-      for (std::size_t row = 0; row < ids.size(); row += width)
-        EXPECT_EQ(ids[row] < count, ids[row + second] < count);
+    for (const char* const list : {"object_pairs", "contacts"}) {
+      const auto a = column_of<std::uint32_t>(message, list, "object_a");
+      const auto b = column_of<std::uint32_t>(message, list, "object_b");
+      for (std::size_t row = 0; row < a.size(); ++row) EXPECT_EQ(a[row] < count, b[row] < count);
     }
   }
   EXPECT_GT(most, 0u);
@@ -411,7 +410,7 @@ TEST(ViewerRecording, SetDetectsTheSameFrameAnew) {
   EXPECT_EQ(contact_count(frame), recorded.contacts[45].size());
   page.say({{"do", "set"}, {"contacts", "continuous"}});
   opening(page);
-  EXPECT_GT(page.frame().section(36).count, 0u);
+  EXPECT_GT(count_of(page.frame(), "continuous_contacts"), 0u);
 }
 
 TEST(ViewerRecording, WithoutSeriesOrWithoutFramesItIsFine) {

@@ -101,7 +101,7 @@ TEST(ViewerSettings, AfterASetTheMotionGoesOnAsWithoutIt) {
   EXPECT_EQ(frame.json["step"], 90);
   for (const std::uint32_t moving : {0u, 1u, 3u, 4u})
     EXPECT_EQ(frame.values<Vec3f>(32, moving), without.values<Vec3f>(32, moving)) << moving;
-  EXPECT_GT(frame.section(34).count, 0u);
+  EXPECT_GT(count_of(frame, "contacts"), 0u);
   expect_contacts(frame, expected.scene().result(), center);
 }
 
@@ -155,7 +155,8 @@ TEST(ViewerSettings, RepeatsObjectsApartAndCutsTheList) {
   EXPECT_EQ(scene.json["objects"][3]["name"], "waves #2");
   EXPECT_EQ(scene.json["objects"][13]["name"], "soft #5");
   EXPECT_EQ(scene.json["objects"][13]["body"], true);
-  EXPECT_TRUE(page.frame().values<Pair>(33).empty()) << "the copies are disjoint, like the three originals";
+  EXPECT_EQ(count_of(page.frame(), "object_pairs"), 0u)
+      << "the copies are disjoint, like the three originals";
   EXPECT_NO_THROW(page.frame_after_steps(20));
   page.say({{"do", "set"}, {"objects", 2}});
   scene = page.scene();

@@ -34,7 +34,8 @@ TEST(ViewerSession, TellsTheSceneAndThenFramesAgainstCredit) {
                                             {"body", true},
                                             {"rigid", false},
                                             {"waves", false},
-                                            {"self_collision", false}}));
+                                            {"self_collision", false},
+                                            {"margin", 0.0}}));
   EXPECT_EQ(scene.values<Triangle>(16, 2), make_icosphere(3).triangles);
   EXPECT_EQ(scene.section(16, 2).count, 180u);
   EXPECT_TRUE(page.drain().empty());  // the page has given no credit

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { isAt, pause, picture, runProgram, scenes, settled, until } from "./tools/harness.mjs";
+import { contactsIn, isAt, pause, picture, runProgram, scenes, settled, until } from "./tools/harness.mjs";
 
 /** In the second recording the first object waves otherwise. */
 async function open(stage, seed) {
@@ -33,7 +33,7 @@ async function differentRuns(stage) {
   await page.getByRole("button", { name: "Last frame" }).click();
   await until(page, () => supple.model.frame.text.step === supple.model.frame.text.range[1]);
   await settled(page);
-  const isApart = await page.evaluate(() => Array.from(supple.model.frame.contacts).every((_, i, all) => i % 8 !== 0 || all[i] < 9 === all[i + 2] < 9));
+  const isApart = (await contactsIn(page)).every(([a, , b]) => a < 9 === b < 9);
   assert.ok(isApart, "objects of both are not tested with each other");
   const both = await picture(page);
 
@@ -42,9 +42,10 @@ async function differentRuns(stage) {
   const [a, b] = [await boundsOf(page, true), await boundsOf(page, false)];
   assert.ok(b[0] > a[1], `A to ${a[1]}, B from ${b[0]}`);
   const contacts = await page.evaluate(() => {
-    const { contacts, contactPoints } = supple.model.frame;
+    const { contacts, contact_points } = supple.model.frame.lists;
+    const { object_a, first_point, point_count } = contacts.columns;
     const xs = [[], []];
-    for (let i = 0; i < contacts.length; i += 8) for (let k = 0; k < contacts[i + 5]; ++k) xs[contacts[i] < 9 ? 0 : 1].push(contactPoints[8 * (contacts[i + 6] + k)]);
+    for (let i = 0; i < contacts.count; ++i) for (let k = 0; k < point_count[i]; ++k) xs[object_a[i] < 9 ? 0 : 1].push(contact_points.columns.position[3 * (first_point[i] + k)]);
     return xs.map((list) => [Math.min(...list), Math.max(...list)]);
   });
   assert.ok(contacts[0][1] < a[1] + 1e-3 && contacts[1][0] > b[0] - 1e-3, `marks stand with their objects: ${JSON.stringify(contacts)}`);

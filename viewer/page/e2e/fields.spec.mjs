@@ -153,7 +153,7 @@ async function arrowsAndDots(stage) {
   await choose(page, "Field", "Gap");
   await settled(page);
   assert.equal(await page.getByRole("slider", { name: "Length of the longest arrow" }).isVisible(), false);
-  const gaps = await page.evaluate(() => [...supple.model.frame.proximityPoints].filter((_, i) => i % 8 === 3));
+  const gaps = await page.evaluate(() => [...supple.model.frame.lists.proximity_pairs.columns.distance]);
   assert.deepEqual([(await counts(page)).fieldArrows, (await counts(page)).fieldDots], [0, gaps.length]);
   const to = Number(/to (\S+), viridis/.exec(await barText(page))[1]);
   assert.ok(gaps.length > 0 && Math.abs(to - Math.max(...gaps)) < 0.01 * to);

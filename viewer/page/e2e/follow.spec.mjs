@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { atStep, goesOn, hasFrame, isAt, pause, runProgram, scenes, seenTriangle, settled, steps, SWAYING_CROWD, until } from "./tools/harness.mjs";
+import { atStep, contactsIn, goesOn, hasFrame, isAt, pause, runProgram, scenes, seenTriangle, settled, steps, SWAYING_CROWD, until } from "./tools/harness.mjs";
 import { SIZES } from "./tools/sizes.mjs";
 
 const nine = join(scenes, "nine.toml");
@@ -16,7 +16,8 @@ async function pinsFollowEachStep(stage) {
   const pin = page.locator(".pairs").getByRole("button", { name: "pin" });
   assert.ok(await pin.isDisabled());
   await contacts.locator('[aria-rowindex="1"]').click();
-  const pair = await page.evaluate(() => [supple.model.frame.contacts[0], supple.model.frame.contacts[2]]);
+  const [[one, , other]] = await contactsIn(page);
+  const pair = [one, other];
   await pin.click();
   await page.getByRole("tab", { name: "Pins", selected: true }).waitFor();
   await page.getByRole("tab", { name: "Contacts" }).click();
@@ -34,12 +35,11 @@ async function pinsFollowEachStep(stage) {
 
   await settled(page);
   await steps(page, 30);
-  const { lists, present, expected, last } = await page.evaluate((pair) => {
-    const { frame } = supple.model;
-    let expected = 0;
-    for (let i = 0; i < frame.contacts.length; i += 8) if (frame.contacts[i] === pair[0] && frame.contacts[i + 2] === pair[1]) expected += 1;
-    return { lists: supple.pins.list.map(({ series }) => series.steps), present: supple.pins.list[0].series.at(0, frame.text.step), expected, last: frame.text.step };
-  }, pair);
+  const expected = (await contactsIn(page)).filter(([a, , b]) => a === one && b === other).length;
+  const { lists, present, last } = await page.evaluate(() => {
+    const { step } = supple.model.frame.text;
+    return { lists: supple.pins.list.map(({ series }) => series.steps), present: supple.pins.list[0].series.at(0, step), last: step };
+  });
   for (const list of lists) {
     assert.equal(list.at(-1), last);
     assert.ok(list.length > 30 && list.every((step, i) => i === 0 || step === list[i - 1] + 1), `steps are missing: ${list}`);
@@ -92,7 +92,7 @@ async function pinsOfARecording(stage) {
   for (const frame of [frames - 1, frames - 2, 20]) {
     await page.evaluate((frame) => supple.client.ask({ do: "seek", frame }), frame);
     await isAt(page, frame);
-    const shown = await page.evaluate(() => Array.from({ length: supple.model.frame.contacts.length / 8 }, (_, i) => supple.model.frame.contacts.subarray(8 * i, 8 * i + 4)).filter(([a, , b]) => a === 0 && b === 1).length);
+    const shown = (await contactsIn(page)).filter(([a, , b]) => a === 0 && b === 1).length;
     assert.equal(contacts[frame], shown, `in frame ${frame}`);
   }
   assert.deepEqual(await page.evaluate(() => supple.pins.list[0].series.steps), Array.from({ length: frames }, (_, i) => i));
@@ -127,23 +127,15 @@ async function tapsOnPlotsSeek(stage) {
 /** Of a pair that never touches and of a contact that has ended, the page says so. */
 async function pinsSayWhatIsMissing(stage) {
   const { page } = await stage.viewAt(12, nine);
-  const apart = await page.evaluate(() => {
-    const { frame, objects } = supple.model;
-    for (let a = 0; a < objects.length; ++a)
-      for (let b = a + 1; b < objects.length; ++b) {
-        const touches = Array.from({ length: frame.contacts.length / 8 }, (_, i) => i).some((i) => frame.contacts[8 * i] === a && frame.contacts[8 * i + 2] === b);
-        if (!touches) return [a, b];
-      }
-  });
+  const touching = await contactsIn(page);
+  const objects = await page.evaluate(() => supple.model.objects.map(({ index }) => index));
+  const apart = objects.flatMap((a) => objects.slice(a + 1).map((b) => [a, b])).find(([a, b]) => !touching.some(([one, , other]) => one === a && other === b));
   await page.evaluate((pair) => supple.pins.add(pair), apart);
   await page.getByText("No contact in 1 step.").waitFor();
-  const key = await page.evaluate(() => [...supple.model.frame.contacts.subarray(0, 4)]);
+  const [key] = touching;
   await page.evaluate((key) => supple.pins.add([key[0], key[2]], key), key);
   await page.getByText("Values of 1 step.").waitFor();
-  const isPresent = () => page.evaluate((key) => {
-    const { contacts } = supple.model.frame;
-    return Array.from({ length: contacts.length / 8 }, (_, i) => 8 * i).some((at) => key.every((id, i) => contacts[at + i] === id));
-  }, key);
+  const isPresent = async () => (await contactsIn(page)).some((contact) => contact.join() === key.join());
   for (let count = 0; await isPresent(); ++count) {
     assert.ok(count < 100, "the contact does not end");
     await steps(page, 1);
@@ -175,7 +167,7 @@ async function tablesAreFiltered(stage) {
   assert.equal(await page.getByRole("columnheader", { name: "depth" }).filter({ visible: true }).getAttribute("aria-sort"), "descending");
   const [deep, flat, ...more] = await depths();
   assert.ok(deep > flat && more.length === 0, `${deep}, ${flat}`);
-  const kind = await page.evaluate(() => supple.model.scene.kinds.curve[supple.model.frame.curves[2]]);
+  const kind = await page.evaluate(() => ["closed", "open", "branched"][supple.model.frame.lists.curves.columns.kind[0]]);
   await page.getByRole("searchbox", { name: "Filter curves" }).fill(`depth<${(deep + flat) / 2} kind=${kind}`);
   await summary("1 of 2 curves");
   await curves.locator(".row:visible").click();

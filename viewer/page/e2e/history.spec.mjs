@@ -6,8 +6,8 @@ import { join } from "node:path";
 import { plotBox, runProgram, said, scenes, settled, simulateTo, step, until } from "./tools/harness.mjs";
 
 const facts = (page) => page.evaluate(() => {
-  const { text, contacts, objectPairs } = supple.model.frame;
-  return { step: text.step, past: text.past, playing: text.playing, range: text.range, contacts: contacts.length / 8, pairs: objectPairs.length / 2 };
+  const { text, lists } = supple.model.frame;
+  return { step: text.step, past: text.past, playing: text.playing, range: text.range, contacts: lists.contacts.count, pairs: lists.object_pairs.count };
 });
 const isAt = (page, wanted) => until(page, (wanted) => supple.model.frame.text.step === wanted, wanted);
 

@@ -27,9 +27,9 @@ async function rodsAndParticles(stage) {
   const { page } = await stage.viewAt(0, scene);
   // In the first second, each step: kinds of pairs with an edge or a point of no triangle.
   const found = () => page.evaluate(() => {
-    const { impacts, proximityPairs } = supple.model.frame;
-    for (let i = 6; i < impacts.length; i += 8) window.kinds = (window.kinds ?? new Set()).add(supple.model.scene.kinds.impact[impacts[i]].join());
-    window.isNear ||= proximityPairs.length > 0;
+    const { continuous_contacts, proximity_pairs } = supple.model.frame.lists;
+    for (const kind of continuous_contacts.columns.kind) window.kinds = (window.kinds ?? new Set()).add(kind);
+    window.isNear ||= proximity_pairs.count > 0;
     return window.isNear && window.kinds?.size > 0;
   });
   const most = Math.ceil(1 / (await page.evaluate(() => supple.model.scene.time_step)));

@@ -114,30 +114,30 @@ async function surfaceShowsItsValues(stage) {
 async function marksShowTheirValues(stage) {
   const ball = (name, x) => `[[object]]\nname = "${name}"\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, 0, 0]\nmargin = 0.05\nsolid = true\n`;
   const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "proximity,penetration"\n${ball("one", 0)}${ball("two", 1.9)}${ball("three", 3.95)}`));
-  await until(page, () => supple.model.frame.proximityPairs.length > 4 && supple.model.frame.penetrations.length > 4);
+  await until(page, () => supple.model.frame.lists.proximity_pairs.count > 2 && supple.model.frame.lists.penetrations.count > 1);
   await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
   await settled(page);
-  const rests = async (kind, list, offset) => {
-    const at = await page.evaluate(([list, offset]) => supple.project([...supple.model.frame[list].subarray(offset, offset + 3)]), [list, offset]);
+  const rests = async (kind, list, column) => {
+    const at = await page.evaluate(([list, column]) => supple.project([...supple.model.frame.lists[list].columns[column].subarray(0, 3)]), [list, column]);
     const ground = await groundPlace(page);
     await page.mouse.move(ground.x, ground.y);
     await page.mouse.move(at.x, at.y);
     await until(page, (kind) => document.querySelector(".hover:not([hidden])")?.textContent.includes(kind), kind);
   };
   for (const label of ["Depths", "Curves", "Contact points"]) await page.getByRole("checkbox", { name: label }).uncheck();
-  await rests("near", "proximityPoints", 0);
-  const gaps = await page.evaluate(() => Array.from({ length: supple.model.frame.proximityPoints.length / 8 }, (_, i) => supple.model.frame.proximityPoints[8 * i + 3]));
+  await rests("near", "proximity_pairs", "point_a");
+  const gaps = await page.evaluate(() => [...supple.model.frame.lists.proximity_pairs.columns.distance]);
   const gap = Number(await row(page, "gap (length)"));
   assert.ok(gaps.some((value) => Math.abs(value - gap) < 1e-4 * value), `${gap} is not a gap`);
   await page.getByRole("checkbox", { name: "Proximity pairs" }).uncheck();
   await page.getByRole("checkbox", { name: "Depths" }).check();
-  await rests("vertex inside", "penetrationPoints", 0);
-  const depths = await page.evaluate(() => Array.from({ length: supple.model.frame.penetrationPoints.length / 8 }, (_, i) => supple.model.frame.penetrationPoints[8 * i + 3]));
+  await rests("vertex inside", "penetrations", "point");
+  const depths = await page.evaluate(() => [...supple.model.frame.lists.penetrations.columns.depth]);
   const depth = Number(await row(page, "depth (length)"));
   assert.ok(depths.some((value) => Math.abs(value - depth) < 1e-4 * value), `${depth} is not a depth`);
   await page.getByRole("checkbox", { name: "Depths" }).uncheck();
   await page.getByRole("checkbox", { name: "Contact points" }).check();
-  await rests("Contact: ", "contactPoints", 0);
+  await rests("Contact: ", "contact_points", "position");
   const length = Math.hypot(...(await row(page, "normal")).split(", ").map(Number));
   assert.ok(Math.abs(length - 1) < 0.01);
   assert.match(await row(page, "one"), /^triangle \d+$/);
@@ -176,11 +176,11 @@ async function fieldIsShown(stage) {
 
   await choose("Gap");  // the dots of the field are marks, too, without the layer of pairs
   await settled(page);
-  const { points, gaps } = await page.evaluate(() => {
-    const rows = Array.from({ length: supple.model.frame.proximityPoints.length / 8 }, (_, i) => [...supple.model.frame.proximityPoints.subarray(8 * i, 8 * i + 4)]);
-    return { points: rows, gaps: rows.map((row) => row[3]) };
+  const { point, gaps } = await page.evaluate(() => {
+    const { point_a, distance } = supple.model.frame.lists.proximity_pairs.columns;
+    return { point: [...point_a.subarray(0, 3)], gaps: [...distance] };
   });
-  const dot = await page.evaluate((point) => supple.project(point), points[0].slice(0, 3));
+  const dot = await page.evaluate((point) => supple.project(point), point);
   await page.mouse.move(dot.x, 130);
   await page.mouse.move(dot.x, dot.y);
   await tooltip(page).getByText("near").waitFor();

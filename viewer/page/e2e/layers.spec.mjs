@@ -38,10 +38,10 @@ async function proximityAndDepthsShow(stage) {
   const ball = (x) => `[[object]]\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, 0, 0]\nmargin = 0.05\nsolid = true\n`;
   const scene = stage.file("balls.toml", `[scene]\ncontacts = "proximity,penetration"\n${ball(0)}${ball(1.9)}${ball(3.95)}`);
   const { page } = await stage.view(scene);
-  await until(page, () => supple.model.frame.proximityPairs.length > 4 && supple.model.frame.penetrations.length > 4);
+  await until(page, () => supple.model.frame.lists.proximity_pairs.count > 2 && supple.model.frame.lists.penetrations.count > 1);
   await settled(page);
   const { drawn, pairs, depths } = await page.evaluate(() => ({
-    drawn: supple.counts(), pairs: supple.model.frame.proximityPairs.length / 2, depths: supple.model.frame.penetrations.length / 4,
+    drawn: supple.counts(), pairs: supple.model.frame.lists.proximity_pairs.count, depths: supple.model.frame.lists.penetrations.count,
   }));
   assert.equal(drawn.proximity, pairs);
   assert.equal(drawn.depths, depths);
@@ -61,14 +61,16 @@ async function proximityAndDepthsShow(stage) {
 async function curvesShow(stage) {
   const ball = (x, y) => `[[object]]\nname = "at ${x}"\nmodel = "icosphere"\nfrequency = 6\ntranslate = [${x}, ${y}, 0.05]\n`;
   const { page } = await stage.view(stage.file("balls.toml", `[scene]\ncontacts = "penetration"\n${ball(0, 0)}${ball(1.9, 0.04)}${ball(3.6, -0.07)}`));
-  await until(page, () => supple.model.frame.curves.length > 0);
+  await until(page, () => supple.model.frame.lists.curves.count > 0);
   await settled(page);
   const { drawn, frame } = await page.evaluate(() => {
-    const { curves, curvePoints, enclosedVertices } = supple.model.frame;
-    return { drawn: supple.counts(), frame: { curves: [...curves], points: [...curvePoints], enclosed: enclosedVertices.length } };
+    const { curves, enclosed_vertices } = supple.model.frame.lists;
+    const { area, centroid, depth, enclosed_count_a: a, enclosed_count_b: b } = curves.columns;
+    const last = { area: Math.hypot(...area.subarray(3, 6)), depth: depth[1], at: [...centroid.subarray(3, 6)], enclosed: `${a[1]} + ${b[1]}` };
+    return { drawn: supple.counts(), frame: { curves: curves.count, enclosed: enclosed_vertices.count, last } };
   });
   assert.equal(drawn.curves, 2);
-  assert.equal(frame.curves.length, 16);
+  assert.equal(frame.curves, 2);
   assert.ok(drawn.curveFaces > frame.enclosed / 2 && frame.enclosed > 4);
   const before = await picture(page);
   await page.getByRole("checkbox", { name: "Curves", exact: true }).uncheck();
@@ -81,13 +83,12 @@ async function curvesShow(stage) {
   await rows.nth(1).waitFor();
   assert.equal(await rows.count(), 2);
   const rounded = (x) => String(Number(x.toPrecision(3)));
-  const { curves, points } = frame;
-  const expected = ["at 1.9", "at 3.6", rounded(points[15]), rounded(points[11]), `${curves[13]} + ${curves[14]}`];
+  const expected = ["at 1.9", "at 3.6", rounded(frame.last.area), rounded(frame.last.depth), frame.last.enclosed];
   assert.deepEqual(await rows.nth(1).getByRole("gridcell").allTextContents(), expected);
   await rows.nth(1).click();
   await settled(page);
   const { target } = await camera(page);
-  points.slice(8, 11).forEach((x, axis) => assert.ok(Math.abs(target[axis] - x) < 1e-3, `${target} is not at ${points}`));
+  frame.last.at.forEach((x, axis) => assert.ok(Math.abs(target[axis] - x) < 1e-3, `${target} is not at ${frame.last.at}`));
   assert.equal(await rows.nth(1).getAttribute("aria-selected"), "true");
 }
 
@@ -99,7 +100,7 @@ async function countsAreTheSessions(stage) {
   await settled(page);
   const { drawn, frame, statistics } = await page.evaluate(() => ({
     drawn: supple.counts(),
-    frame: { contacts: supple.model.frame.contacts.length / 8, points: supple.model.frame.contactPoints.length / 8, pairs: supple.model.frame.objectPairs.length / 2 },
+    frame: { contacts: supple.model.frame.lists.contacts.count, points: supple.model.frame.lists.contact_points.count, pairs: supple.model.frame.lists.object_pairs.count },
     statistics: Object.fromEntries(supple.model.scene.statistics.map((name, i) => [name, supple.model.frame.statistics[i]])),
   }));
   assert.equal(drawn.points, frame.points);
@@ -169,7 +170,7 @@ async function boundingVolumesShow(stage) {
   await page.getByLabel("Bounding volume").selectOption("sphere");
   await until(page, () => supple.model.scene.bounding_volume === "sphere" && supple.counts().balls > 0 && supple.counts().boxes === 0);
   await page.getByLabel("Contacts", { exact: true }).and(page.locator("select")).selectOption("continuous");
-  await until(page, () => supple.model.frame?.impacts.length > 0);
+  await until(page, () => supple.model.frame?.lists.continuous_contacts.count > 0);
 }
 
 async function hidesAndColoursObjects(stage) {

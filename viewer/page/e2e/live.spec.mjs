@@ -242,7 +242,7 @@ async function plotsHoldEveryStep(stage) {
   await settled(page);
   const { frames, times, seen, contacts, now } = await page.evaluate(() => ({
     frames: supple.model.history.frames, times: supple.model.history.column("time"), seen: supple.model.framesSeen,
-    contacts: supple.model.history.column("contacts").at(-1), now: supple.model.frame.contacts.length / 8,
+    contacts: supple.model.history.column("contacts").at(-1), now: supple.model.frame.lists.contacts.count,
   }));
   assert.ok(seen - before < last, "each step had a frame, so this test shows nothing");
   assert.deepEqual(frames, Array.from({ length: last + 1 }, (_, i) => i));
@@ -276,7 +276,7 @@ async function watches(stage) {
   const refusal = await spectator.evaluate(() => supple.client.ask({ do: "pause" }).then(() => "", (error) => error.message));
   assert.match(refusal, /only watches/);
   await pause(page);
-  const facts = (of) => of.evaluate(() => [supple.model.frame.text.step, supple.model.frame.contacts.length, ...supple.model.objects.map(({ positions }) => positions.reduce((sum, x) => sum + x, 0))]);
+  const facts = (of) => of.evaluate(() => [supple.model.frame.text.step, supple.model.frame.lists.contacts.count, ...supple.model.objects.map(({ positions }) => positions.reduce((sum, x) => sum + x, 0))]);
   const wanted = await facts(page);
   assert.ok(wanted[0] > 15, "the spectator stopped nothing");
   await until(spectator, (step) => supple.model.frame.text.step === step, wanted[0]);

@@ -41,7 +41,7 @@ async function denseMarksThinOut(stage) {
     supple.draw();
     return supple.drawn().points / 3;  // marks behind surfaces, halos and colours
   });
-  const gaps = await page.evaluate(() => supple.model.frame.proximityPairs.length / 2);
+  const gaps = await page.evaluate(() => supple.model.frame.lists.proximity_pairs.count);
   assert.ok(gaps > 1500, `${gaps} gaps`);
   assert.equal(await page.evaluate(() => supple.counts().proximity), gaps);
   await page.getByRole("list", { name: "Layers" }).getByText(gaps.toLocaleString("en")).waitFor();
@@ -87,7 +87,7 @@ async function emptyLayersAreFolded(stage) {
     supple.client.send({ do: "grab", object: 0, vertex: 0 });
     supple.client.send({ do: "drag", to: [1.2, 0, 0] });
   });
-  await until(page, () => supple.model.frame.contacts.length > 0);
+  await until(page, () => supple.model.frame.lists.contacts.count > 0);
   await layers.getByRole("checkbox", { name: "Intersecting triangles" }).waitFor();
 }
 

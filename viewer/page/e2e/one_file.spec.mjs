@@ -22,7 +22,7 @@ async function openFrom(stage, input, from) {
 
 async function movesAndCollides(stage) {
   const page = await open(stage, join(scenes, "nine.toml"));
-  await until(page, () => supple.model.frame.text.step > 10 && supple.model.frame.contacts.length > 0);
+  await until(page, () => supple.model.frame.text.step > 10 && supple.model.frame.lists.contacts.count > 0);
   await pause(page);
   const paused = await step(page);
   await page.getByRole("button", { name: "+1 step" }).click();
@@ -37,11 +37,11 @@ async function agreesWithTheProgram(stage) {
   const at12 = async (page) => {
     await isAt(page, 12);
     return page.evaluate(async () => {
-      const { contacts, contactPoints } = supple.model.frame;
-      const all = new Blob([contacts, contactPoints, ...supple.model.objects.map(({ positions }) => positions)]);
+      const { contacts, contact_points } = supple.model.frame.lists;
+      const all = new Blob([...Object.values(contacts.columns), contact_points.columns.position, ...supple.model.objects.map(({ positions }) => positions)]);
       let hash = 0x811c9dc5;  // FNV-1a, because a page from a file has no crypto.subtle
       for (const byte of new Uint8Array(await all.arrayBuffer())) hash = Math.imul(hash ^ byte, 0x01000193) >>> 0;
-      return { contacts: contacts.length / 8, hash };
+      return { contacts: contacts.count, hash };
     });
   };
   const carried = await at12(await openFrom(stage, scene, (address) => atStep(address, 12)));
@@ -60,7 +60,7 @@ async function isPulled(stage) {
   await page.mouse.move(left.x, left.y);
   await page.mouse.down();
   await page.mouse.move(right.x, right.y, { steps: 12 });
-  await until(page, () => supple.model.frame.contacts.length > 0);
+  await until(page, () => supple.model.frame.lists.contacts.count > 0);
   await page.mouse.up();
   await settled(page);
   const seen = await seenTriangle(page, 1);
@@ -78,7 +78,7 @@ async function playsARecording(stage) {
   await page.getByRole("slider", { name: "Timeline" }).fill("20");
   await isAt(page, 20);
   assert.equal(
-    await page.evaluate(() => supple.model.frame.contacts.length / 8),
+    await page.evaluate(() => supple.model.frame.lists.contacts.count),
     await page.evaluate(() => supple.model.history.column("contacts")[20]),
   );
 }

@@ -323,11 +323,11 @@ async function malformedMessage(stage) {
 
 async function laterVersion(stage) {
   const page = await pageWithMessages(stage, balls(stage), (message, send) => {
-    message.writeUInt16LE(2, 4);
+    message.writeUInt16LE(3, 4);
     send(message);
   });
   await says(page, "The page cannot read a message of the program");
-  await page.getByText("version 2").waitFor();
+  await page.getByText("version 3").waitFor();
 }
 
 async function hugeScene(stage) {

@@ -1,7 +1,7 @@
 // What a click in the view or in a table selects, explains and pulls.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { camera, counts, groundPlace, said, scenes, seenTriangle, settled, simulateTo, TWO_BALLS, until } from "./tools/harness.mjs";
+import { camera, contactsIn, counts, groundPlace, said, scenes, seenTriangle, settled, simulateTo, TWO_BALLS, until } from "./tools/harness.mjs";
 
 const nine = join(scenes, "nine.toml");
 /** Many pairs touch then. */
@@ -30,12 +30,10 @@ async function contactTableFlies(stage) {
   await page.emulateMedia({ reducedMotion: "no-preference" });  // the camera flies
   await simulateTo(page, CROWDED);
   const grid = page.getByRole("treegrid", { name: "Contacts" });
-  const first = await page.evaluate(() => {
-    const [a, , b] = supple.model.frame.contacts;
-    const { contacts, contactPoints, text } = supple.model.frame;
-    const places = Array.from({ length: contacts.length / 8 }, (_, i) => i).filter((i) => contacts[8 * i] === a && contacts[8 * i + 2] === b);
-    return { names: [a, b].map((object) => supple.model.objects[object].name), count: places.length, points: contactPoints.length / 8, step: text.step };
-  });
+  const contacts = await contactsIn(page);
+  const [[one, , other]] = contacts;
+  const names = await page.evaluate(() => supple.model.objects.map(({ name }) => name));
+  const first = { names: [names[one], names[other]], count: contacts.filter(([a, , b]) => a === one && b === other).length };
   const total = Number(await grid.getAttribute("aria-rowcount"));
   const row = (i) => grid.locator(`[aria-rowindex="${i}"]`);
   assert.deepEqual((await row(1).getByRole("gridcell").allTextContents()).slice(0, 3), [`▸ ${first.names[0]}`, first.names[1], first.count.toLocaleString("en")]);
@@ -47,18 +45,16 @@ async function contactTableFlies(stage) {
   assert.ok((await grid.getByRole("row").count()) < 100, "rows out of sight have elements");
   await row(3).click();
   const key = () => page.evaluate(() => [...supple.model.contact]);
-  const inFrame = (i) => page.evaluate((i) => [...supple.model.frame.contacts.subarray(8 * i, 8 * i + 4)], i);
-  assert.deepEqual(await key(), await inFrame(1));
+  assert.deepEqual(await key(), contacts[1]);
   await page.keyboard.press("ArrowDown");
-  assert.deepEqual(await key(), await inFrame(2));
+  assert.deepEqual(await key(), contacts[2]);
   await row(4).and(grid.locator('[aria-selected="true"]')).waitFor();
   await page.keyboard.press("ArrowLeft");  // closes the pair
   await until(page, (rows) => Number(document.querySelector('[aria-label="Contacts"][role=treegrid]').getAttribute("aria-rowcount")) === rows, total);
   await row(1).and(grid.locator('[aria-selected="true"]')).waitFor();
 
   await page.getByRole("searchbox", { name: "Filter contacts" }).fill(first.names[0]);
-  const matching = await page.evaluate((name) => new Set(Array.from({ length: supple.model.frame.contacts.length / 8 }, (_, i) => [supple.model.frame.contacts[8 * i], supple.model.frame.contacts[8 * i + 2]])
-    .filter((pair) => pair.some((object) => supple.model.objects[object].name === name)).map(String)).size, first.names[0]);
+  const matching = new Set(contacts.flatMap(([a, , b]) => ([names[a], names[b]].includes(first.names[0]) ? [`${a} ${b}`] : []))).size;
   await page.getByText(`${matching} of ${total} pair`).waitFor();
   assert.equal(Number(await grid.getAttribute("aria-rowcount")), matching);
   await page.getByRole("searchbox", { name: "Filter contacts" }).fill("no such name");
@@ -68,7 +64,7 @@ async function contactTableFlies(stage) {
 async function contactPointsArePicked(stage) {
   const { page } = await stage.view(nine);
   await simulateTo(page, CROWDED);
-  const at = await page.evaluate(() => supple.project([...supple.model.frame.contactPoints.subarray(0, 3)]));
+  const at = await page.evaluate(() => supple.project([...supple.model.frame.lists.contact_points.columns.position.subarray(0, 3)]));
   await page.mouse.click(at.x, at.y);
   await until(page, () => supple.model.contact !== null);
   await page.getByRole("heading", { name: "Contact", exact: true }).waitFor();
@@ -96,7 +92,7 @@ async function saysThatAContactIsOne(stage) {
   const { page } = await stage.view(nine);
   await simulateTo(page, CROWDED);
   await page.getByRole("tab", { name: "Inspect" }).click();
-  const [a, triangleA, b, triangleB] = await page.evaluate(() => [...supple.model.frame.contacts.subarray(0, 4)]);
+  const [[a, triangleA, b, triangleB]] = await contactsIn(page);
   await page.getByLabel("Object A", { exact: true }).fill(String(a));
   await page.getByLabel("Triangle A").fill(String(triangleA));
   await page.getByLabel("Object B", { exact: true }).fill(String(b));
@@ -114,7 +110,7 @@ async function saysThatAContactIsOne(stage) {
 async function pullingMakesContacts(stage) {
   const { page } = await stage.view(stage.file("balls.toml", TWO_BALLS));
   await settled(page);
-  assert.equal(await page.evaluate(() => supple.model.frame.contacts.length), 0);
+  assert.equal(await page.evaluate(() => supple.model.frame.lists.contacts.count), 0);
   // In the front view, drag from the side of the left ball that faces the right one to the middle of the
   // right one.
   await page.getByRole("combobox", { name: "Axis view" }).selectOption("front");
@@ -126,7 +122,7 @@ async function pullingMakesContacts(stage) {
   await page.mouse.down();
   await page.mouse.move((left.x + right.x) / 2, right.y, { steps: 10 });
   await page.mouse.move(right.x, right.y, { steps: 10 });
-  await until(page, () => supple.model.frame.contacts.length > 0);
+  await until(page, () => supple.model.frame.lists.contacts.count > 0);
   await page.mouse.up();
   await settled(page);
   assert.ok((await counts(page)).points > 0);
@@ -193,7 +189,7 @@ async function continuousContactsAreListed(stage) {
   await simulateTo(page, 20);
   await page.getByRole("checkbox", { name: "Contact normals" }).check();
   await settled(page);
-  const impacts = await page.evaluate(() => supple.model.frame.impacts.length / 8);
+  const impacts = await page.evaluate(() => supple.model.frame.lists.continuous_contacts.count);
   assert.ok(impacts > 0);
   assert.equal((await counts(page)).points, impacts);
   assert.equal((await counts(page)).normals, impacts);

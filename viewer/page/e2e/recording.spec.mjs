@@ -31,7 +31,7 @@ async function scrubs(stage) {
   assert.ok(Math.abs(middle - (frames - 1) / 2) <= 2, `at ${middle}`);
   assert.equal(Number(await slider.inputValue()), middle);
   const expected = await page.evaluate(() => supple.model.history.column("contacts")[supple.model.frame.text.step]);
-  assert.equal(await page.evaluate(() => supple.model.frame.contacts.length / 8), expected, "the contacts of a frame are those that were recorded");
+  assert.equal(await page.evaluate(() => supple.model.frame.lists.contacts.count), expected, "the contacts of a frame are those that were recorded");
 }
 
 async function stepsAndPlays(stage) {

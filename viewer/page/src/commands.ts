@@ -1,6 +1,6 @@
 /** Every command of the page, once: its name, its keys, and what it does. The keyboard, the list of shortcuts and the palette use it. */
 import type { App } from "./app";
-import { LAYER_ROWS } from "./panels/scene_panel";
+import { LAYER_ROWS } from "./view/styles";
 import { AXIS_VIEWS, type AxisView } from "./view/camera";
 import { LAYOUTS } from "./view/panes";
 

@@ -1,7 +1,10 @@
-/** Contacts of both kinds: triangles that intersect, or elements that collide during the step. */
-import type { FrameMessage, Kinds } from "./protocol/messages";
+/** Contacts of a frame: single ones that can be selected, and all that two objects have in common. */
+import type { Model } from "./model";
+import type { ListName, Rows } from "./protocol/lists";
+import type { FrameMessage, SceneText } from "./protocol/messages";
+import { ANSWERS, eachPlace, findKey, hasColumn, keyLength, numberAt, objectAt, rowOfKey, SIDES, sidesAt, type ContactSide } from "./records";
 
-type ContactData = Pick<FrameMessage, "contacts" | "impacts">;
+type ContactData = Pick<FrameMessage, "lists">;
 
 /**
  * Identifies a contact by what touches, so that it stays selected from frame to frame. Triangles: object and
@@ -9,60 +12,38 @@ type ContactData = Pick<FrameMessage, "contacts" | "impacts">;
  */
 export type ContactKey = readonly number[];
 
-export interface ContactSide {
-  object: number;
-  /** A triangle, a vertex, or the two vertices of an edge. */
-  elements: number[];
-  isFace: boolean;
+const SELECTABLE = ["contacts", "continuous_contacts"] as const;
+
+export const hasImpacts = ({ lists }: ContactData): boolean => lists.continuous_contacts.count > 0;
+
+/** The rows that can be selected: elements that collide during the step, or else triangles that intersect. */
+export const selectableIn = ({ lists }: ContactData): Rows => lists[SELECTABLE[hasImpacts({ lists }) ? 1 : 0]];
+
+/** The row of a contact among those that can be selected, or −1. */
+export const findContact = (frame: ContactData, key: ContactKey): number => findKey(selectableIn(frame), key);
+
+export const sidesOf = (key: ContactKey): [ContactSide, ContactSide] => sidesAt(rowOfKey(SELECTABLE.find((list) => keyLength(list) === key.length)!, key), 0)!;
+
+/** The points of a row. */
+export function pointsOf({ lists }: ContactData, objects: Model["objects"], rows: Rows, place: number): number[][] {
+  const points: number[][] = [];
+  eachPlace(rows, place, lists, objects, (data, at) => points.push([data[at]!, data[at + 1]!, data[at + 2]!]));
+  return points;
 }
 
-const STRIDE = 8;
+/** The middle of some points; null when there are none. */
+export const middleOf = (points: number[][]): number[] | null =>
+  points.length === 0 ? null : [0, 1, 2].map((axis) => points.reduce((sum, point) => sum + point[axis]!, 0) / points.length);
 
-export const hasImpacts = (frame: ContactData): boolean => frame.impacts.length > 0;
-
-export function contactCount(frame: ContactData): number {
-  return (hasImpacts(frame) ? frame.impacts : frame.contacts).length / STRIDE;
+/** The distance of a row as a part of the margins of both objects. */
+export function shareOfMargins({ objects }: SceneText, rows: Rows, place: number): number {
+  const reach = SIDES.reduce((sum, side) => sum + objects[objectAt(rows, side, place)]!.margin, 0);
+  return reach > 0 ? (numberAt(rows, "distance", place) ?? 0) / reach : 0;
 }
 
-export function keyAt(frame: ContactData, place: number): ContactKey {
-  const from = STRIDE * place;
-  return Array.from(hasImpacts(frame) ? frame.impacts.subarray(from, from + 7) : frame.contacts.subarray(from, from + 4));
-}
-
-/** The index of a contact in a frame, or −1. */
-export function findContact(frame: ContactData, key: ContactKey): number {
-  const data = hasImpacts(frame) ? frame.impacts : frame.contacts;
-  if (key.length !== (hasImpacts(frame) ? 7 : 4)) return -1;
-  for (let i = 0; i < data.length; i += STRIDE) {
-    let same = 0;
-    while (same < key.length && data[i + same] === key[same]) same += 1;
-    if (same === key.length) return i / STRIDE;
-  }
-  return -1;
-}
-
-export function sidesOf(key: ContactKey, kinds: Kinds): [ContactSide, ContactSide] {
-  if (key.length === 4)
-    return [{ object: key[0]!, elements: [key[1]!], isFace: true }, { object: key[2]!, elements: [key[3]!], isFace: true }];
-  const [a, b] = kinds.impact[key[6]!]!;
-  const side = (at: number, kind: string): ContactSide =>
-    ({ object: key[at]!, elements: kind === "edge" ? [key[at + 1]!, key[at + 2]!] : [key[at + 1]!], isFace: kind === "face" });
-  return [side(0, a), side(3, b)];
-}
-
-export function kindAt(frame: ContactData, place: number, kinds: Kinds): string {
-  return hasImpacts(frame) ? kinds.impact[frame.impacts[STRIDE * place + 6]!]!.join("–") : kinds.contact[frame.contacts[STRIDE * place + 4]!]!;
-}
-
-/** The array that has the points of a contact, the first row, and the number of rows. */
-export function pointsAt(frame: FrameMessage, place: number): { data: Float32Array; first: number; count: number } {
-  if (hasImpacts(frame)) return { data: frame.impactPoints, first: place, count: 1 };
-  return { data: frame.contactPoints, first: frame.contacts[STRIDE * place + 6]!, count: frame.contacts[STRIDE * place + 5]! };
-}
-
-/** Rows of one kind that belong to a pair: contacts, impacts, proximity pairs, or vertices inside the other object. */
+/** Rows of a list that belong to a pair. */
 export interface Run {
-  kind: "contacts" | "impacts" | "proximity" | "penetrations";
+  list: ListName;
   first: number;
   count: number;
 }
@@ -73,7 +54,7 @@ export interface TouchingPair {
   b: number;
   runs: Run[];
   count: number;
-  /** The smallest distance of proximity pairs. */
+  /** The smallest distance of near rows. */
   gap: number | null;
   /** The largest depth of vertices and curves. */
   depth: number | null;
@@ -81,63 +62,49 @@ export interface TouchingPair {
   time: number | null;
 }
 
-export const isTouching = ({ runs }: TouchingPair): boolean => runs.some(({ kind }) => kind === "contacts" || kind === "penetrations");
-export const isHit = ({ runs }: TouchingPair): boolean => runs.some(({ kind }) => kind === "impacts");
+/** Rows with a time are hits, and rows with a distance are near; all others touch. */
+export const isTouching = ({ runs }: TouchingPair): boolean => runs.some(({ list }) => !hasColumn(list, "toi") && !hasColumn(list, "distance"));
+export const isHit = ({ runs }: TouchingPair): boolean => runs.some(({ list }) => hasColumn(list, "toi"));
 
-type PairData = Pick<FrameMessage, "contacts" | "impacts" | "impactPoints" | "proximityPairs" | "proximityPoints" | "penetrations" | "penetrationPoints" | "curves" | "curvePoints">;
-
-const found = new WeakMap<PairData, TouchingPair[]>();
+const found = new WeakMap<ContactData, TouchingPair[]>();
 
 /** The pairs of objects that touch, collide or are near in a frame, in the order of their objects. */
-export function pairsOf(frame: PairData): TouchingPair[] {
+export function pairsOf(frame: ContactData): TouchingPair[] {
   let pairs = found.get(frame);
   if (!pairs) found.set(frame, (pairs = findPairs(frame)));
   return pairs;
 }
 
-function findPairs(frame: PairData): TouchingPair[] {
+function findPairs({ lists }: ContactData): TouchingPair[] {
   const pairs = new Map<string, TouchingPair>();
-  const pairAt = (one: number, other: number): TouchingPair => {
-    const [a, b] = one < other ? [one, other] : [other, one];
+  const pairAt = (rows: Rows, place: number, makes: boolean): TouchingPair | undefined => {
+    const [a, b] = [objectAt(rows, "a", place), objectAt(rows, "b", place)].sort((one, other) => one - other) as [number, number];
     const key = `${a} ${b}`;
-    let pair = pairs.get(key);
-    if (!pair) pairs.set(key, (pair = { a, b, runs: [], count: 0, gap: null, depth: null, time: null }));
-    return pair;
+    if (!pairs.has(key) && makes) pairs.set(key, { a, b, runs: [], count: 0, gap: null, depth: null, time: null });
+    return pairs.get(key);
   };
+  const deepen = (pair: TouchingPair, depth: number | undefined) => depth !== undefined && (pair.depth = Math.max(pair.depth ?? 0, depth));
   // Rows of a kind are sorted by their objects, so those of a pair follow one another.
-  const addRuns = (kind: Run["kind"], data: Uint32Array, stride: number, second: number, measure: (pair: TouchingPair, place: number) => void) => {
-    let pair: TouchingPair | null = null;
-    for (let place = 0, i = 0; i < data.length; ++place, i += stride) {
-      const isNext = place === 0 || data[i] !== data[i - stride] || data[i + second] !== data[i - stride + second];
-      if (isNext) {
-        pair = pairAt(data[i]!, data[i + second]!);
-        pair.runs.push({ kind, first: place, count: 0 });
+  for (const rows of ANSWERS.map((list): Rows => lists[list])) {
+    let pair: TouchingPair | undefined;
+    for (let place = 0; place < rows.count; ++place) {
+      if (place === 0 || SIDES.some((side) => objectAt(rows, side, place) !== objectAt(rows, side, place - 1))) {
+        pair = pairAt(rows, place, true)!;
+        pair.runs.push({ list: rows.list, first: place, count: 0 });
       }
-      pair!.runs[pair!.runs.length - 1]!.count += 1;
+      pair!.runs.at(-1)!.count += 1;
       pair!.count += 1;
-      measure(pair!, place);
+      const [gap, time] = [numberAt(rows, "distance", place), numberAt(rows, "toi", place)];
+      if (gap !== undefined) pair!.gap = Math.min(pair!.gap ?? Infinity, gap);
+      if (time !== undefined) pair!.time = Math.min(pair!.time ?? 1, time);
+      deepen(pair!, numberAt(rows, "depth", place));
     }
-  };
-  const deepen = (pair: TouchingPair, depth: number) => (pair.depth = Math.max(pair.depth ?? 0, depth));
-  addRuns("contacts", frame.contacts, STRIDE, 2, () => {});
-  addRuns("impacts", frame.impacts, STRIDE, 3, (pair, i) => (pair.time = Math.min(pair.time ?? 1, frame.impactPoints[8 * i + 3]!)));
-  addRuns("proximity", frame.proximityPairs, 2, 1, (pair, i) => (pair.gap = Math.min(pair.gap ?? Infinity, frame.proximityPoints[8 * i + 3]!)));
-  addRuns("penetrations", frame.penetrations, 4, 2, (pair, i) => deepen(pair, frame.penetrationPoints[8 * i + 3]!));
-  for (let i = 0; i < frame.curves.length; i += 8) {
-    const pair = pairs.get([frame.curves[i]!, frame.curves[i + 1]!].sort((one, other) => one - other).join(" "));
-    if (pair) deepen(pair, frame.curvePoints[i + 3]!);
+  }
+  for (let place = 0; place < lists.curves.count; ++place) {
+    const pair = pairAt(lists.curves, place, false);
+    if (pair) deepen(pair, numberAt(lists.curves, "depth", place));
   }
   return [...pairs.values()].sort((one, other) => one.a - other.a || one.b - other.b);
-}
-
-/** The middle of the points of a single contact; null when it has no points. */
-export function pointOf(frame: FrameMessage, kind: Run["kind"], place: number): number[] | null {
-  const mean = (data: Float32Array, starts: number[]) => [0, 1, 2].map((axis) => starts.reduce((sum, from) => sum + data[from + axis]!, 0) / starts.length);
-  if (kind === "proximity") return mean(frame.proximityPoints, [8 * place, 8 * place + 4]);
-  if (kind === "penetrations") return mean(frame.penetrationPoints, [8 * place]);
-  if (kind === "impacts") return mean(frame.impactPoints, [8 * place]);
-  const [count, first] = [frame.contacts[STRIDE * place + 5]!, frame.contacts[STRIDE * place + 6]!];
-  return count > 0 ? mean(frame.contactPoints, Array.from({ length: count }, (_, k) => 8 * (first + k))) : null;
 }
 
 /** Pairs of the newest step that were not there in the step before that the page received. */

@@ -6,6 +6,7 @@ import { Emitter } from "./emitter";
 import { firstChoice, type FieldChoice } from "./fields/fields";
 import { eventsOf, History } from "./history";
 import { EVENT_KINDS, type FrameMessage, type SceneMessage, type SceneObject, type SceneText, type SeriesMessage } from "./protocol/messages";
+import viewMembers from "./protocol/view_members_generated.json";
 import { shiftFrame, shiftOf } from "./shift";
 
 export interface ObjectState {
@@ -46,10 +47,10 @@ export interface SliceChoice {
 /** Views of the scene beside each other. */
 export const MOST_VIEWS = 4;
 
-export const LAYERS = [
-  "surface", "wireframe", "regions", "octree", "nodes", "pairs", "candidates", "triangles", "points", "normals", "segments", "proximity", "depths", "curves", "vertices",
-] as const;
-export type Layer = (typeof LAYERS)[number];
+type LayerPath = Extract<keyof typeof viewMembers, `layers.${string}`>;
+export type Layer = LayerPath extends `layers.${infer Name}` ? Name : never;
+export const LAYERS = Object.keys(viewMembers).flatMap((path) => (path.startsWith("layers.") ? [path.slice(7) as Layer] : []));
+const OFF_AT_FIRST: Layer[] = ["wireframe", "regions", "octree", "nodes", "pairs", "candidates", "normals", "vertices"];
 
 /** Layers that the session computes, by their names in the protocol. */
 const MADE_BY_SESSION: Record<string, Layer> = { candidates: "candidates", scene_regions: "regions", colliding_vertices: "vertices", octree: "octree", colliding_nodes: "nodes" };
@@ -145,10 +146,7 @@ export class Model extends Emitter<ModelEvents> {
   framesSeen = 0;
   readonly history = new History();
 
-  layers: Record<Layer, boolean> = {
-    surface: true, wireframe: false, regions: false, octree: false, nodes: false, pairs: false, candidates: false,
-    triangles: true, points: true, normals: false, segments: true, proximity: true, depths: true, curves: true, vertices: false,
-  };
+  layers = Object.fromEntries(LAYERS.map((layer) => [layer, !OFF_AT_FIRST.includes(layer)])) as Record<Layer, boolean>;
   octree: { onlySelected: boolean; level: number } = { onlySelected: false, level: -1 };
   nodes: NodeChoice = { objects: null, level: LEAVES };
   throughSurfaces = true;
@@ -364,8 +362,8 @@ export class Model extends Emitter<ModelEvents> {
 
   /** Selects a contact, and the touching part of object a. */
   selectContact(key: ContactKey): void {
-    const [a] = sidesOf(key, this.scene!.kinds);
-    this.select({ object: a.object, triangle: a.isFace ? a.elements[0]! : null, vertex: null }, key);
+    const [a] = sidesOf(key);
+    this.select({ object: a.object, triangle: a.kind === "face" ? a.elements[0]! : null, vertex: null }, key);
   }
 
   clearSelection(): void {

@@ -1,8 +1,9 @@
 /** Mouse tools: select, grab and pull, or explain why two triangles do not touch. */
 import type { Client } from "./client";
-import { keyAt } from "./contacts";
+import { selectableIn } from "./contacts";
 import type { Model } from "./model";
 import type { Inspector } from "./panels/inspector";
+import { keyAt } from "./records";
 import type { SceneView } from "./view/scene_view";
 
 /** A press that moves less than this is a click. */
@@ -79,7 +80,7 @@ export class Tools {
     const { frame } = this.model;
     const place = this.view.pointing.contactAt(x, y);
     if (frame && place >= 0) {
-      this.model.selectContact(keyAt(frame, place));
+      this.model.selectContact(keyAt(selectableIn(frame), place));
       return this.onPick();
     }
     const hit = this.view.pointing.pickAt(x, y);

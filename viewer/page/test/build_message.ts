@@ -1,5 +1,7 @@
 /** Writes messages as the session does, to test the reader. */
+import { COLUMNS, formOf, type ListName } from "../src/protocol/lists";
 import { NONE } from "../src/protocol/messages";
+import { ARRAYS } from "../src/protocol/sections_generated";
 
 type Numbers = Uint8Array | Uint32Array | Float32Array | Float64Array;
 export interface Section {
@@ -23,7 +25,7 @@ export function message(kind: number, ...sections: Section[]): ArrayBuffer {
   const buffer = new ArrayBuffer(length);
   const view = new DataView(buffer);
   view.setUint32(0, 0x4c505553, true);
-  view.setUint16(4, 1, true);
+  view.setUint16(4, 2, true);
   view.setUint16(6, kind, true);
   view.setUint32(8, length, true);
   view.setUint32(12, sections.length, true);
@@ -39,20 +41,15 @@ export function message(kind: number, ...sections: Section[]): ArrayBuffer {
 export const SCENE = {
   version: "0.5.0", title: "two", source: "simulation", generation: 1, run: 1, settings: [], center: [0, 0, 0], bounds: [[-1, -1, -1], [1, 1, 1]],
   objects: [
-    { name: "one", vertices: 3, triangles: 1, static: false, body: true, self_collision: false },
-    { name: "other", vertices: 4, triangles: 2, static: true, body: false, self_collision: false },
+    { name: "one", vertices: 3, triangles: 1, static: false, body: true, self_collision: false, margin: 0.5 },
+    { name: "other", vertices: 4, triangles: 2, static: true, body: false, self_collision: false, margin: 0.5 },
   ],
   frames: null, time_step: 0.01, seed: "0", contacts: "intersection",
-
-  kinds: {
-    contact: ["point", "segment", "polygon"], certainty: ["certain", "within_tolerance"], curve: ["closed", "open", "branched"],
-    impact: [["vertex", "face"], ["face", "vertex"], ["edge", "edge"], ["vertex", "edge"], ["edge", "vertex"], ["vertex", "vertex"]],
-  },
   fields: [
     { key: "speed", label: "Speed", doc: "How fast", unit: "length/s", element: "vertex", vector: false },
     { key: "strain", label: "Strain", doc: "", unit: "", element: "face", vector: false },
     { key: "user:wind", label: "wind", doc: "", unit: "", element: "vertex", vector: true },
-    { key: "gap", label: "Gap", doc: "", unit: "length", element: "contact", vector: false, section: "proximity_points", column: 3 },
+    { key: "gap", label: "Gap", doc: "", unit: "length", element: "contact", vector: false, list: "proximity_pairs", column: "distance" },
   ],
   can: ["play", "reset", "grab", "set"], statistics: ["total_seconds", "contacts"],
   series: ["time", "contacts"], warnings: [],
@@ -65,6 +62,15 @@ export const words = (tag: number, width: number, numbers: number[], object = NO
 export const floats = (tag: number, width: number, numbers: number[], object = NONE): Section =>
   ({ tag, object, count: numbers.length / width, data: new Float32Array(numbers) });
 
+/** The columns of a list, from rows of numbers by name; those that are not named are 0. */
+export const rowsOf = (list: ListName, ...rows: Record<string, number | number[]>[]): Section[] =>
+  formOf(list).columns.map((form) => {
+    const { name, scalar, width } = form;
+    const data = new ARRAYS[scalar](width * rows.length);
+    rows.forEach((row, i) => data.set([row[name] ?? 0].flat(), width * i));
+    return { tag: 33, object: COLUMNS.indexOf(form), count: rows.length, data };
+  });
+
 export const sceneMessage = (): ArrayBuffer => message(KIND.scene, text(SCENE), words(16, 3, [0, 1, 2], 0), words(16, 3, [0, 1, 2, 0, 2, 3], 1));
 
 /** A frame with one section per tag. */
@@ -73,11 +79,10 @@ export const frameMessage = (): ArrayBuffer =>
     KIND.frame, text(FRAME),
     floats(32, 3, [0, 0, 0, 1, 0, 0, 0, 1, 0], 0),
     floats(32, 3, [0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, NaN], 1),
-    words(33, 2, [0, 1]),
-    words(34, 8, [0, 0, 1, 1, 1, 2, 0, 0]),
-    floats(35, 8, [0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 1, 0]),
-    words(36, 8, [0, 2, 0, 1, 1, 0, 0, 0]),
-    floats(37, 8, [0, 0, 0, 0.5, 0, 0, 1, 0]),
+    ...rowsOf("object_pairs", { object_b: 1 }),
+    ...rowsOf("contacts", { object_b: 1, triangle_b: 1, kind: 1, point_count: 2 }),
+    ...rowsOf("contact_points", {}, { position: [1, 0, 0] }),
+    ...rowsOf("continuous_contacts", { object_b: 1, element_a: [2, 2], element_b: [1, 1], toi: 0.5 }),
     words(38, 4, [0, 0, 1, 1]),
     floats(39, 8, [-1, -1, -1, 0, 1, 1, 1, -1]),
     floats(40, 8, [-1, -1, -1, 0, 1, 1, 1, 2], 1),

@@ -13,7 +13,7 @@ import { readMessage } from "../src/protocol/read_message";
 import { countsOf } from "../src/protocol/read_scene";
 import type { Lines } from "../src/view/marks";
 import { showView } from "../src/view_state";
-import { floats, FRAME, KIND, message, sceneMessage, text, words, type Section } from "./build_message";
+import { floats, FRAME, KIND, message, rowsOf, sceneMessage, text, type Section } from "./build_message";
 
 const scene = () => readMessage(sceneMessage(), null) as SceneMessage;
 const frameOf = (field: string | null, ...sections: Section[]) =>
@@ -73,11 +73,11 @@ test("values of another field are not shown", () => {
   assert.equal(readField(modelWith("user:gone", frameOf(null))), null);
 });
 
-test("vectors have their lengths, and contacts the values of their section", () => {
+test("vectors have their lengths, and contacts the values of their column", () => {
   const wind = readField(modelWith("user:wind", frameOf("user:wind", floats(62, 3, [3, 4, 0, 0, 0, 0, 0, 0, -2], 0))))!;
   assert.deepEqual([...wind.values.get(0)!], [5, 0, 2]);
-  const gap = readField(modelWith("gap", frameOf("gap", words(54, 2, [0, 1, 0, 1]), floats(55, 8, [0, 0, 0, 0.25, 1, 0, 0, 1, 0, 0, 0, 0.5, 1, 0, 0, 1]))))!;
-  assert.deepEqual([gap.lowest, gap.highest, gap.rows.length], [0.25, 0.5, 16]);
+  const gap = readField(modelWith("gap", frameOf("gap", ...rowsOf("proximity_pairs", { object_b: 1, distance: 0.25 }, { object_b: 1, distance: 0.5 }))))!;
+  assert.deepEqual([gap.lowest, gap.highest, [...Array.from(gap.ofRows)]], [0.25, 0.5, [0.25, 0.5]]);
 });
 
 test("values that do not fit the scene are refused", () => {

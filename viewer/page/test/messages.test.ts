@@ -1,10 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import type { ListName } from "../src/protocol/lists";
 import { NONE, type FrameMessage, type SceneMessage } from "../src/protocol/messages";
 import { readMessage } from "../src/protocol/read_message";
 import { countsOf, type SceneCounts } from "../src/protocol/read_scene";
 import { MessageError } from "../src/protocol/read_sections";
-import { floats, FRAME, frameMessage, KIND, message, SCENE, sceneMessage, seriesMessage, text, words, type Section } from "./build_message";
+import { keyAt, numberAt, objectAt, rowsIn } from "../src/records";
+import { floats, FRAME, frameMessage, KIND, message, rowsOf, SCENE, sceneMessage, seriesMessage, text, words, type Section } from "./build_message";
 
 const scene = readMessage(sceneMessage(), null) as SceneMessage;
 const counts: SceneCounts = countsOf(scene);
@@ -25,8 +27,10 @@ test("a frame is read in place", () => {
   const buffer = frameMessage();
   const frame = readMessage(buffer, counts) as FrameMessage;
   assert.equal(frame.positions.get(0)!.buffer, buffer);
-  assert.deepEqual([...frame.contacts], [0, 0, 1, 1, 1, 2, 0, 0]);
-  assert.equal(frame.contactPoints[8], 1);
+  assert.deepEqual(keyAt(frame.lists.contacts, 0), [0, 0, 1, 1]);
+  assert.equal(frame.lists.contact_points.columns["position"]!.buffer, buffer);
+  assert.equal(numberAt(frame.lists.contact_points, "position", 3), 1);
+  assert.deepEqual([frame.lists.continuous_contacts.count, frame.lists.curves.count], [1, 0]);
   assert.deepEqual([...frame.statistics], [0.001, 1]);
   assert.deepEqual([...frame.collidingVertices.get(1)!], [0, 3]);
   assert.deepEqual([...frame.events.narrow_phase.begin], [7, 0, 1]);
@@ -50,8 +54,8 @@ test("series, answers and failures are read", () => {
 });
 
 test("unknown tags are passed over, unknown kinds are not", () => {
-  const frame = readMessage(frameWith({ tag: 999, count: 5, data: new Uint8Array(7) }, words(33, 2, [0, 1])), counts);
-  assert.ok(frame.kind === "frame" && frame.objectPairs.length === 2);
+  const frame = readMessage(frameWith({ tag: 999, count: 5, data: new Uint8Array(7) }, { tag: 33, object: 999, count: 5, data: new Uint8Array(7) }, ...rowsOf("object_pairs", { object_b: 1 })), counts);
+  assert.ok(frame.kind === "frame" && frame.lists.object_pairs.count === 1);
   reject(message(9, text({})), /unknown kind/);
   reject(message(0, text({})), /unknown kind/);
 });
@@ -65,7 +69,7 @@ test("a wrong header is refused", () => {
     return buffer;
   };
   reject(with32(0, 1), /does not begin/);
-  reject(with32(4, 2 | (2 << 16)), /version 2/);
+  reject(with32(4, 1 | (2 << 16)), /version 1/);
   reject(with32(8, 16), /length/);
   reject(with32(12, 99), /ends within/);
   reject(with32(12, 1), /longer/);
@@ -73,30 +77,24 @@ test("a wrong header is refused", () => {
 });
 
 test("ids that are not there are refused", () => {
-  reject(frameWith(words(33, 2, [0, 2])), /object_pairs/);
-  reject(frameWith(words(34, 8, [0, 1, 1, 0, 0, 0, 0, 0])), /contacts/);
-  reject(frameWith(words(34, 8, [0, 0, 1, 0, 1, 2, 0, 0])), /points/);
+  const rejectRow = (list: ListName, row: Record<string, number | number[]>, about: RegExp) => reject(frameWith(...rowsOf(list, row)), about);
+  rejectRow("object_pairs", { object_b: 2 }, /object_pairs has an unknown object_b/);
+  rejectRow("contacts", { triangle_a: 1, object_b: 1 }, /contacts names an element/);
+  rejectRow("contacts", { object_b: 1, kind: 3 }, /contacts has an unknown kind/);
   reject(frameWith(words(38, 4, [0, 0, 1, 2])), /candidates/);
   reject(frameWith(words(42, 1, [4], 1)), /colliding_vertices/);
-  reject(frameWith(words(36, 8, [0, 3, 0, 1, 1, 0, 0, 0]), floats(37, 8, new Array<number>(8).fill(0))), /impact/);
-  reject(frameWith(words(36, 8, [0, 0, 0, 1, 1, 0, 0, 0])), /impacts/);
-  for (const row of [[0, 0, 0, 1, 1, 0, 6, 0], [0, 0, 0, 1, 1, 0, 0, 2], [0, 0, 0, 1, 0, 4, 3, 0]])
-    reject(frameWith(words(36, 8, row), floats(37, 8, new Array<number>(8).fill(0))), /impact/);
-  reject(frameWith(words(34, 8, [0, 0, 1, 0, 3, 0, 0, 0])), /kind/);
-  reject(frameWith(words(54, 2, [0, 2]), floats(55, 8, new Array<number>(8).fill(0))), /proximity pair/);
-  reject(frameWith(words(54, 2, [0, 1])), /proximity pairs/);
-  reject(frameWith(words(56, 4, [0, 99, 1, 0]), floats(57, 8, new Array<number>(8).fill(0))), /penetrations/);
-  reject(frameWith(words(56, 4, [0, 0, 1, 0])), /penetrations/);
-  const curve = (row: number[], enclosed: number[]) =>
-    frameWith(words(58, 8, row), floats(59, 8, new Array<number>(8).fill(0)), words(60, 1, enclosed));
-  const taken = readMessage(curve([0, 1, 0, 5, 0, 1, 2, 0], [2, 3, 0]), counts);
-  assert.ok(taken.kind === "frame" && taken.enclosedVertices.length === 3);
-  reject(curve([0, 2, 0, 5, 0, 1, 2, 0], [2, 3, 0]), /object/);
-  reject(curve([0, 1, 3, 5, 0, 1, 2, 0], [2, 3, 0]), /kind/);
-  reject(curve([0, 1, 0, 5, 0, 1, 2, 0], [3, 3, 0]), /encloses/);
-  reject(curve([0, 1, 0, 5, 0, 1, 2, 0], [2, 3]), /encloses/);
-  reject(curve([0, 1, 0, 5, 0xffffffff, 1, 2, 0], [2, 3, 0]), /encloses/);
-  reject(frameWith(words(58, 8, [0, 1, 0, 5, 0, 0, 0, 0])), /curves/);
+  const impact = { object_b: 1, element_a: [0, 0], element_b: [1, 1] };
+  rejectRow("continuous_contacts", { ...impact, element_a: [3, 3] }, /names an element/);
+  rejectRow("continuous_contacts", { ...impact, kind: 2, element_a: [0, 3] }, /names an element/);
+  rejectRow("continuous_contacts", { ...impact, kind: 3, element_b: [0, 4] }, /names an element/);
+  rejectRow("continuous_contacts", { ...impact, kind: 6 }, /unknown kind/);
+  rejectRow("continuous_contacts", { ...impact, certainty: 2 }, /unknown certainty/);
+  rejectRow("proximity_pairs", { object_b: 2 }, /proximity_pairs has an unknown object_b/);
+  rejectRow("penetrations", { vertex: 99, object_b: 1 }, /penetrations names an element/);
+  rejectRow("penetrations", { object_b: 1, triangle: 2 }, /penetrations names an element/);
+  rejectRow("curves", { object_b: 2 }, /curves has an unknown object_b/);
+  rejectRow("curves", { object_b: 1, kind: 3 }, /curves has an unknown kind/);
+  reject(frameWith(...rowsOf("curves", { object_b: 1 }).slice(1)), /columns of curves have different lengths/);
   reject(frameWith(floats(32, 3, [0, 0, 0], 0)), /positions/);
   reject(frameWith(floats(32, 3, [0, 0, 0], 5)), /positions/);
   reject(frameWith(floats(40, 8, new Array<number>(8).fill(0), 2)), /octree/);
@@ -106,11 +104,13 @@ test("ids that are not there are refused", () => {
 });
 
 test("sections that do not fit are refused", () => {
-  reject(frameWith({ tag: 33, count: 2, data: new Uint32Array(2) }), /length/);
-  reject(frameWith({ tag: 33, count: 0x40000001, data: new Uint32Array(2) }), /length/);
-  reject(frameWith(words(33, 2, [0, 1]), words(33, 2, [0, 1])), /twice/);
+  reject(frameWith({ tag: 38, count: 2, data: new Uint32Array(2) }), /length/);
+  reject(frameWith({ tag: 33, object: 0, count: 1, data: new Uint32Array(2) }), /length/);
+  reject(frameWith({ tag: 38, count: 0x40000001, data: new Uint32Array(4) }), /length/);
+  reject(frameWith(...rowsOf("object_pairs", {}), ...rowsOf("object_pairs", {})), /twice/);
   reject(frameWith(words(16, 3, [0, 1, 2], 0)), /kind frame/);
-  reject(frameWith(words(33, 2, [0, 1], 0)), /wrong object/);
+  reject(frameWith(words(38, 4, [0, 0, 1, 0], 0)), /wrong object/);
+  reject(frameWith(words(33, 1, [0])), /wrong object/);
   reject(message(KIND.frame), /no text/);
   reject(message(KIND.frame, { tag: 1, count: 2, data: new Uint8Array([0xff, 0xfe]) }), /JSON/);
   reject(message(KIND.frame, text([1])), /JSON object/);
@@ -129,7 +129,7 @@ test("a scene must have all it names", () => {
 });
 
 test("a frame of a scene that is gone is not looked into", () => {
-  const old = message(KIND.frame, text({ ...FRAME, generation: 0 }), words(34, 8, [9, 9, 9, 9, 0, 0, 0, 0]));
+  const old = message(KIND.frame, text({ ...FRAME, generation: 0 }), ...rowsOf("contacts", { object_a: 9, triangle_a: 9, object_b: 9, triangle_b: 9 }));
   assert.equal(readMessage(old, counts).kind, "frame");
 });
 
@@ -158,9 +158,10 @@ function numbersFrom(seed: number): () => number {
 /** Layers access a frame only within its arrays. */
 function useFrame(frame: FrameMessage): void {
   if (frame.text.generation !== counts.generation) return;
-  for (let i = 0; i < frame.contacts.length; i += 8) {
-    assert.ok(frame.contacts[i + 1]! < counts.triangles[frame.contacts[i]!]!);
-    assert.ok(8 * (frame.contacts[i + 5]! + frame.contacts[i + 6]!) <= frame.contactPoints.length);
+  const { contacts, contact_points } = frame.lists;
+  for (let place = 0; place < contacts.count; ++place) {
+    assert.ok(numberAt(contacts, "triangle_a", place)! < counts.triangles[objectAt(contacts, "a", place)]!);
+    assert.ok(rowsIn(contacts, place, "contact_points", frame.lists).end <= contact_points.count);
   }
   for (const [object, positions] of frame.positions) assert.equal(positions.length, 3 * counts.vertices[object]!);
 }

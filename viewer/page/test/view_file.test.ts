@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { LAYERS } from "../src/model";
-import { VIEW_MEMBERS } from "../src/protocol/view_members";
 import type { ViewState } from "../src/view_state";
 import { hashOfView, parseView, viewOfHash } from "../src/views/view_file";
+import { LAYER_ROWS } from "../src/view/styles";
 
 const VIEW: ViewState = {
   version: 1, camera: { position: [1, 2, 3], target: [0, 0, 0.5], zoom: 1.5, orthographic: true },
@@ -46,9 +46,8 @@ test("a malformed view names the member and what it must be", () => {
   refuses({ version: 1, pins: { 1: { c: "x" } } }, /pins\.1\.c is unknown/);
 });
 
-test("every layer of the page is a member of view files, and no other", () => {
-  const layers = VIEW_MEMBERS.flatMap(({ path }) => (path.startsWith("layers.") ? [path.slice(7)] : []));
-  assert.deepEqual(layers.sort(), [...LAYERS].sort());
+test("every layer of view files has a row in the panel, and no other", () => {
+  assert.deepEqual(LAYER_ROWS.map(({ layer }) => layer).sort(), [...LAYERS].sort());
 });
 
 test("a link contains a view, and says when it is damaged", async () => {

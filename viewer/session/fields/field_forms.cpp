@@ -36,8 +36,7 @@ struct BuiltIn {
   const char *key, *label, *unit, *doc;
   FieldElement element;
   bool is_vector;
-  const char* section;
-  unsigned column;
+  const char *list, *column;
   bool (*is_offered)(const SceneView&);
 };
 
@@ -46,43 +45,43 @@ constexpr std::array built_in = std::to_array<BuiltIn>({
     {"speed", "Speed", "length/s",
      "How far each vertex moved since the step before, divided by the time between; of a program, since its "
      "last step that the page was given",
-     vertex, false, "", 0, &has_time},
+     vertex, false, "", "", &has_time},
     {"velocity", "Velocity", "length/s",
      "The mean velocity of each vertex since the step before, or since that step of a program", vertex, true,
-     "", 0, &has_time},
+     "", "", &has_time},
     {"displacement", "Displacement", "length",
      "From the vertex at the start to the vertex now; of a program, from where it was when the page got the "
      "scene",
-     vertex, true, "", 0, [](const SceneView&) { return true; }},
+     vertex, true, "", "", [](const SceneView&) { return true; }},
     {"strain", "Strain", "",
      "The largest principal strain of each triangle: the largest stretch of any direction in it, length now "
      "/ "
      "length at rest, minus 1; of a program, the rest is as for the displacement",
-     FieldElement::face, false, "", 0, &has_triangles},
+     FieldElement::face, false, "", "", &has_triangles},
     {"distance", "Distance to other objects", "length",
      "From each vertex to the nearest triangle of another object, also where the vertex is inside of it; the "
      "exact nearest one, by at least one query `Scene::closest` for each vertex",
-     vertex, false, "", 0, &has_other_objects},
+     vertex, false, "", "", &has_other_objects},
     {"depth", "Depth", "length",
      "Of each vertex inside a solid object, to the nearest point of its surface; of several objects, the "
      "largest depth",
-     vertex, false, "", 0, &finds<ContactKinds::penetration>},
-    {"gap", "Gap", "length", "The distance of each proximity pair", vertex, false, "proximity_points", 3,
-     &finds<ContactKinds::proximity>},
+     vertex, false, "", "", &finds<ContactKinds::penetration>},
+    {"gap", "Gap", "length", "The distance of each proximity pair", vertex, false, "proximity_pairs",
+     "distance", &finds<ContactKinds::proximity>},
     {"impact_time", "Time of impact", "",
      "The time of each continuous contact, from 0 at the start of the step to 1 at its end", vertex, false,
-     "impact_points", 3, &finds<ContactKinds::continuous>},
+     "continuous_contacts", "toi", &finds<ContactKinds::continuous>},
     {"curve_depth", "Depth of curves", "length",
      "How far the first object must move along the normal of each curve of intersections to pass the second",
-     vertex, false, "curve_points", 3, &finds<ContactKinds::penetration>},
+     vertex, false, "curves", "depth", &finds<ContactKinds::penetration>},
     {"curve_area", "Area of curves", "length²",
      "The area that each closed curve of intersections encloses, seen along its normal", vertex, false,
-     "curve_points", 7, &finds<ContactKinds::penetration>},
+     "curves", "area", &finds<ContactKinds::penetration>},
 });
 
 FieldForm form_of(const BuiltIn& field) {
-  return {field.key,     field.label,     field.doc,     field.unit,
-          field.element, field.is_vector, field.section, field.column};
+  return {field.key,     field.label,     field.doc,  field.unit,
+          field.element, field.is_vector, field.list, field.column};
 }
 
 FieldForm form_of(const UserField& field) {
@@ -123,11 +122,11 @@ void write_fields(const std::vector<FieldForm>& fields, JsonText& json) {
     json.member("label", form.label);
     json.member("doc", form.doc);
     json.member("unit", form.unit);
-    json.member("element", form.section.empty() ? word_of(form.element) : "contact");
+    json.member("element", form.list.empty() ? word_of(form.element) : "contact");
     json.member("vector", form.is_vector);
-    if (!form.section.empty()) {
-      json.member("section", form.section);
-      json.member("column", std::uint32_t{form.column});
+    if (!form.list.empty()) {
+      json.member("list", form.list);
+      json.member("column", form.column);
     }
     json.end_object();
   }

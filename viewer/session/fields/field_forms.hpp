@@ -18,10 +18,10 @@ struct FieldForm {
   std::string unit;
   FieldElement element = FieldElement::vertex;
   bool is_vector = false;
-  /// The section of frames with the values of contacts. Each of its rows begins with the place of the
-  /// contact, and `column` has the value. Empty for fields of vertices and triangles.
-  std::string section{};
-  unsigned column = 0;
+  /// The list of frames and its column with the values of contacts; of vectors, the values are their lengths.
+  /// Empty for fields of vertices and triangles.
+  std::string list{};
+  std::string column{};
 
   bool operator==(const FieldForm&) const = default;
 };

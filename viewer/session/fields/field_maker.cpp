@@ -61,7 +61,7 @@ void FieldMaker::choose(const FieldForm* form) {
 }
 
 void FieldMaker::pack(Stage& stage, MessageWriter& message) {
-  if (!is_on_ || !form_.section.empty()) return;
+  if (!is_on_ || !form_.list.empty()) return;
   begin(stage);
   for (std::size_t i = 0; i < stage.show().objects.size(); ++i) {
     const std::span<const double> numbers = values(stage, i);
@@ -80,7 +80,7 @@ void FieldMaker::pack(Stage& stage, MessageWriter& message) {
 
 void FieldMaker::answer(Stage& stage, FieldElement element, std::uint32_t object, std::uint32_t number,
                         JsonText& json) {
-  if (!is_on_ || !form_.section.empty() || form_.element != element) return;
+  if (!is_on_ || !form_.list.empty() || form_.element != element) return;
   begin(stage);
   const std::span<const double> numbers = values(stage, object);
   if (numbers.empty()) return;

@@ -146,13 +146,11 @@ void answer_explain(const SceneView& show, const Source& source, const Center& c
 
 void answer_measure(const SceneView& show, const Source& source, const Center& center, std::uint32_t a,
                     std::uint32_t b, JsonText& json) {
-  std::optional<ProximityPair> found;
-  if (a != b) {
-    Scene both;
-    const ObjectId id_a = both.add(source.positions(a), show.objects[a].mesh.triangles);
-    const ObjectId id_b = both.add(source.positions(b), show.objects[b].mesh.triangles);
-    found = both.distance(id_a, id_b);
-  }
+  Scene both;
+  const ObjectId id_a = both.add(source.positions(a), show.objects[a].mesh.triangles),
+                 id_b = both.add(source.positions(b), show.objects[b].mesh.triangles);
+  decltype(both.distance(id_a, id_b)) found;
+  if (a != b) found = both.distance(id_a, id_b);
   json.key("distance");
   if (!found) json.null();
   if (found) json.value(found->distance);

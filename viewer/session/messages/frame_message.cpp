@@ -11,8 +11,6 @@
 namespace supple::viewer {
 namespace {
 
-using Ids = std::array<std::uint32_t, 8>;
-
 constexpr std::size_t most_elements = 1'000'000;
 /// Rows of statistics that are kept, for pages that take no frames for a while and for pages that come again.
 constexpr std::size_t most_rows = 4'000;
@@ -87,11 +85,7 @@ void FramePacker::pack(const FrameView& frame, MessageWriter& message) {
   octree_levels_.clear();
   message.begin(MessageKind::frame);
   add_positions(frame);
-  add_contacts(frame);
-  add_impacts(frame);
-  add_proximity_pairs(frame);
-  add_penetrations(frame);
-  add_curves(frame);
+  add_lists(frame);
   add_steps(frame);
   if (frame.layers.candidates) add_candidates(frame);
   for (const std::uint32_t object : frame.layers.octree_objects) {
@@ -117,140 +111,6 @@ void FramePacker::add_positions(const FrameView& frame) {
         message_->add<std::array<float, 3>>(Tag::positions, static_cast<std::uint32_t>(i), positions.size());
     std::transform(positions.begin(), positions.end(), sent.begin(), frame.center);
   }
-}
-
-void FramePacker::add_contacts(const FrameView& frame) {
-  const DetectResult& result = frame.source.scene().result();
-  const std::size_t pair_count = limited("object_pairs", result.object_pairs.size());
-  const auto pairs = message_->add<std::array<std::uint32_t, 2>>(Tag::object_pairs, pair_count);
-  for (std::size_t i = 0; i < pair_count; ++i)
-    pairs[i] = {result.object_pairs[i].a.index, result.object_pairs[i].b.index};
-
-  const std::size_t count = limited("contacts", result.contacts.size());
-  const bool has_points = !result.contact_points.empty();
-  const auto rows = message_->add<Ids>(Tag::contacts, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Contact& c = result.contacts[i];
-    rows[i] = {c.object_a.index,
-               c.triangle_a,
-               c.object_b.index,
-               c.triangle_b,
-               static_cast<std::uint32_t>(c.kind),
-               has_points ? c.point_count : 0u,
-               has_points ? c.first_point : 0u,
-               0};
-  }
-  if (has_points) add_contact_points(frame, count);
-}
-
-/// Adds the points of the contacts that are sent, in the order of the contacts.
-void FramePacker::add_contact_points(const FrameView& frame, std::size_t contact_count) {
-  const DetectResult& result = frame.source.scene().result();
-  const Contact* const last = contact_count == 0 ? nullptr : &result.contacts[contact_count - 1];
-  const std::size_t count = last == nullptr ? 0 : last->first_point + last->point_count;
-  const auto rows = message_->add<Row>(Tag::contact_points, count);
-  for (const Contact& contact : result.contacts.first(contact_count)) {
-    const std::array<float, 3> normal = floats(contact.normal);
-    for (std::size_t i = 0; i < contact.point_count; ++i) {
-      const std::size_t point = contact.first_point + i;
-      rows[point] = row_of(frame.center(result.contact_points[point].position), 0, normal, 0);
-    }
-  }
-}
-
-void FramePacker::add_impacts(const FrameView& frame) {
-  const auto contacts = frame.source.scene().result().continuous_contacts;
-  if (!contains(frame.source.contacts(), ContactKinds::continuous)) return;
-  const std::size_t count = limited("impacts", contacts.size());
-  const auto rows = message_->add<Ids>(Tag::impacts, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const ContinuousContact& c = contacts[i];
-    rows[i] = {c.object_a.index,
-               c.element_a[0],
-               c.element_a[1],
-               c.object_b.index,
-               c.element_b[0],
-               c.element_b[1],
-               static_cast<std::uint32_t>(c.kind),
-               static_cast<std::uint32_t>(c.certainty)};
-  }
-  const auto points = message_->add<Row>(Tag::impact_points, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const ContinuousContact& c = contacts[i];
-    points[i] = row_of(frame.center(c.point), static_cast<float>(c.toi), floats(c.normal), 0);
-  }
-}
-
-/// Adds the proximity pairs, each with its closest points.
-void FramePacker::add_proximity_pairs(const FrameView& frame) {
-  if (!contains(frame.source.contacts(), ContactKinds::proximity)) return;
-  const auto pairs = frame.source.scene().result().proximity_pairs;
-  const std::size_t count = limited("proximity_pairs", pairs.size());
-  const auto objects = message_->add<std::array<std::uint32_t, 2>>(Tag::proximity_pairs, count);
-  for (std::size_t i = 0; i < count; ++i) objects[i] = {pairs[i].object_a.index, pairs[i].object_b.index};
-  const auto rows = message_->add<Row>(Tag::proximity_points, count);
-  const auto margin = [&](ObjectId object) { return frame.show.objects[object.index].options.margin; };
-  for (std::size_t i = 0; i < count; ++i) {
-    const ProximityPair& pair = pairs[i];
-    const double reach = margin(pair.object_a) + margin(pair.object_b);
-    const double share = reach > 0 ? pair.distance / reach : 0;
-    rows[i] = row_of(frame.center(pair.point_a), static_cast<float>(pair.distance),
-                     frame.center(pair.point_b), static_cast<float>(share));
-  }
-}
-
-/// Adds the vertices inside solid objects, each with the closest point of the surface.
-void FramePacker::add_penetrations(const FrameView& frame) {
-  const Scene& scene = frame.source.scene();
-  if (!contains(frame.source.contacts(), ContactKinds::penetration)) return;
-  const auto penetrations = scene.result().penetrations;
-  const std::size_t count = limited("penetrations", penetrations.size());
-  const auto ids = message_->add<std::array<std::uint32_t, 4>>(Tag::penetrations, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Penetration& p = penetrations[i];
-    ids[i] = {p.object_a.index, p.vertex, p.object_b.index, p.triangle};
-  }
-  const auto rows = message_->add<Row>(Tag::penetration_points, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Penetration& p = penetrations[i];
-    rows[i] = row_of(frame.center(scene.position(p.object_a, p.vertex)), static_cast<float>(p.depth),
-                     frame.center(p.point), 0);
-  }
-}
-
-/// Adds as many curves as there is room for with the vertices that they enclose.
-void FramePacker::add_curves(const FrameView& frame) {
-  const Scene& scene = frame.source.scene();
-  if (!contains(frame.source.contacts(), ContactKinds::penetration)) return;
-  const std::span<const IntersectionCurve> all = scene.result().curves;
-  const auto vertex_end = [](const IntersectionCurve& curve) {
-    return std::size_t{curve.first_enclosed} + curve.enclosed_count_a + curve.enclosed_count_b;
-  };
-  std::size_t count = 0;
-  while (count < std::min(all.size(), most_elements) && vertex_end(all[count]) <= most_elements) ++count;
-  if (count < all.size()) omissions_.push_back({"curves", all.size()});
-  const std::span<const IntersectionCurve> curves = all.first(count);
-  const auto ids = message_->add<Ids>(Tag::curves, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const IntersectionCurve& c = curves[i];
-    ids[i] = {c.a.index,
-              c.b.index,
-              static_cast<std::uint32_t>(c.kind),
-              c.contact_count,
-              c.first_enclosed,
-              c.enclosed_count_a,
-              c.enclosed_count_b,
-              0};
-  }
-  const auto rows = message_->add<Row>(Tag::curve_points, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const IntersectionCurve& c = curves[i];
-    rows[i] = row_of(frame.center(c.centroid), static_cast<float>(c.depth), floats(c.normal),
-                     static_cast<float>(norm(c.area)));
-  }
-  const std::size_t vertex_count = curves.empty() ? 0 : vertex_end(curves.back());
-  const auto vertices = message_->add<std::uint32_t>(Tag::enclosed_vertices, vertex_count);
-  std::copy_n(scene.result().enclosed_vertices.begin(), vertex_count, vertices.begin());
 }
 
 /// Adds the statistics and the events that the page does not have. The last row is that of this frame. Frames

@@ -39,10 +39,6 @@ inline Row row_of(const std::array<float, 3>& first, float w, const std::array<f
   return {first[0], first[1], first[2], w, second[0], second[1], second[2], last};
 }
 
-inline std::array<float, 3> floats(const Vec3d& v) {
-  return Center{}(v);
-}
-
 /// The input of one frame message.
 struct FrameView {
   const SceneView& show;
@@ -86,12 +82,7 @@ class FramePacker {
   };
 
   void add_positions(const FrameView& frame);
-  void add_contacts(const FrameView& frame);
-  void add_contact_points(const FrameView& frame, std::size_t contact_count);
-  void add_impacts(const FrameView& frame);
-  void add_proximity_pairs(const FrameView& frame);
-  void add_penetrations(const FrameView& frame);
-  void add_curves(const FrameView& frame);
+  void add_lists(const FrameView& frame);
   void add_row(std::uint64_t step, double motion_seconds, const StepStats& stats);
   void drop_old_rows();
   void add_steps(const FrameView& frame);

@@ -8,7 +8,7 @@ namespace supple::viewer {
 namespace {
 
 constexpr std::uint32_t magic = 0x4c505553;  // SUPL
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 
 using Words = std::array<std::uint32_t, 4>;
 

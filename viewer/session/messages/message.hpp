@@ -22,11 +22,7 @@ enum class Tag : std::uint32_t {
   edges = 17,
   points = 18,
   positions = 32,
-  object_pairs = 33,
-  contacts = 34,
-  contact_points = 35,
-  impacts = 36,
-  impact_points = 37,
+  column = 33,
   candidates = 38,
   scene_regions = 39,
   octree_boxes = 40,
@@ -43,13 +39,6 @@ enum class Tag : std::uint32_t {
   colliding_spheres = 51,
   octree_edges = 52,
   colliding_edges = 53,
-  proximity_pairs = 54,
-  proximity_points = 55,
-  penetrations = 56,
-  penetration_points = 57,
-  curves = 58,
-  curve_points = 59,
-  enclosed_vertices = 60,
   field_values = 61,
   field_vectors = 62,
   pin_rows = 63,
@@ -87,8 +76,8 @@ class MessageWriter {
   }
   /// Adds a section of `count` elements with `values` values each.
   template <class Value>
-  std::span<Value> add_rows(Tag tag, std::size_t count, std::size_t values) {
-    std::byte* const data = add_section(tag, no_object, count, count * values * sizeof(Value));
+  std::span<Value> add_rows(Tag tag, std::uint32_t object, std::size_t count, std::size_t values) {
+    std::byte* const data = add_section(tag, object, count, count * values * sizeof(Value));
     return {reinterpret_cast<Value*>(data), count * values};
   }
   /// The complete message, valid until the next `begin`.

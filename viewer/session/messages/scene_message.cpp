@@ -47,6 +47,7 @@ void add_objects(const Stage& stage, JsonText& json) {
     json.member("waves", std::holds_alternative<WaveMotion>(object.motion));
     json.member("rigid", std::holds_alternative<RigidMotion>(object.motion));
     json.member("self_collision", object.options.self_collision);
+    json.member("margin", object.options.margin);
     if (stage.show().program != nullptr) json.member("removed", !object.id.has_value());
     json.end_object();
   }
@@ -170,30 +171,6 @@ void add_options(const Stage& stage, JsonText& json) {
     json.value(word_of(body_of(*first_body)->springs.integrator));
 }
 
-/// The words of the kinds in frame messages, in the order of their numbers.
-void add_kinds(JsonText& json) {
-  const auto add = [&](const char* name, const auto& list) {
-    json.key(name);
-    json.begin_array();
-    for (const char* word : list) json.value(word);
-    json.end_array();
-  };
-  json.key("kinds");
-  json.begin_object();
-  add("contact", words<IntersectionKind>);
-  add("certainty", words<ImpactCertainty>);
-  add("curve", words<CurveKind>);
-  json.key("impact");
-  json.begin_array();
-  for (std::size_t i = 0; i < words<ElementPairKind>.size(); ++i) {
-    json.begin_array();
-    for (const FeatureKind kind : feature_kinds(static_cast<ElementPairKind>(i))) json.value(word_of(kind));
-    json.end_array();
-  }
-  json.end_array();
-  json.end_object();
-}
-
 void add_abilities(Stage& stage, JsonText& json) {
   json.member("source", stage.recording() ? "recording" : stage.program() ? "program" : "simulation");
   json.key("frames");
@@ -280,7 +257,6 @@ void pack_scene(Stage& stage, SceneNumbers numbers, const std::vector<FieldForm>
   add_options(stage, json);
   add_settings(stage, json);
   add_comparison(stage, json);
-  add_kinds(json);
   write_fields(fields, json);
   add_column_names(stage, json);
   write_pin_values(json);
@@ -305,7 +281,7 @@ void pack_series(const Frames& frames, MessageWriter& message) {
   const std::size_t rows = columns == 0 ? 0 : series.values.size() / columns;
   message.begin(MessageKind::series);
   // One row per element, one column per component.
-  const auto values = message.add_rows<double>(Tag::series, rows, columns);
+  const auto values = message.add_rows<double>(Tag::series, no_object, rows, columns);
   std::copy_n(series.values.begin(), values.size(), values.begin());
   add_events(Tag::series_contact_begin, Tag::series_contact_end, series.contacts, message);
   add_events(Tag::series_narrow_phase_begin, Tag::series_narrow_phase_end, series.narrow_phase, message);

@@ -1,23 +1,27 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <vector>
 
 #include "messages/message.hpp"
 #include "pins/pin_values.hpp"
 
 namespace supple::viewer {
 
-// What each section of a message contains. The reader of the page (viewer/page/src/protocol/sections.ts) and
-// the table of viewer/PROTOCOL.md are made from this list.
+// What each section of a message contains. The reader of the page (page/src/protocol/sections_generated.ts)
+// and the table of viewer/PROTOCOL.md are made from this list.
 
 enum class ScalarOfSection : std::uint8_t { uint8, uint32, float32, float64 };
+inline constexpr const char* names_of_scalars[] = {"uint8", "uint32", "float32", "float64"};
 
 struct SectionForm {
   Tag tag;
   const char* name;
   ScalarOfSection scalar;
-  std::uint32_t width;  ///< scalars of an element; 0 when the scene determines it
+  std::uint32_t width;  ///< scalars of an element; 0 when something else determines it
   unsigned kinds;       ///< of messages with this section: a set of bits `1 << kind`
   bool is_of_object;    ///< one section for each object
   const char* element;  ///< what an element is
@@ -30,6 +34,15 @@ inline constexpr unsigned in_series = 1u << static_cast<unsigned>(MessageKind::s
 inline constexpr unsigned in_texts = in_scene | in_frame | 1u << static_cast<unsigned>(MessageKind::answer) |
                                      1u << static_cast<unsigned>(MessageKind::failure);
 
+/// The names of the kinds of messages with a section.
+inline std::vector<const char*> kinds_of(const SectionForm& form) {
+  std::vector<const char*> kinds;
+  for (std::size_t i = 0; i < std::size(names_of_message_kinds); ++i) {
+    if ((form.kinds >> i & 1u) != 0) kinds.push_back(names_of_message_kinds[i]);
+  }
+  return kinds;
+}
+
 inline constexpr std::array section_forms = std::to_array<SectionForm>({
     {Tag::text, "text", ScalarOfSection::uint8, 1, in_texts, false, "UTF-8 of a JSON object", ""},
     {Tag::triangles, "triangles", ScalarOfSection::uint32, 3, in_scene, true, "vertices", ""},
@@ -39,19 +52,8 @@ inline constexpr std::array section_forms = std::to_array<SectionForm>({
      "vertex of a point of no triangle, such as a particle", "with such points"},
     {Tag::positions, "positions", ScalarOfSection::float32, 3, in_frame, true,
      "`center` of the scene subtracted", "that moved since the last frame that was sent"},
-    {Tag::object_pairs, "object_pairs", ScalarOfSection::uint32, 2, in_frame, false, "objects a < b", ""},
-    {Tag::contacts, "contacts", ScalarOfSection::uint32, 8, in_frame, false,
-     "object a, triangle a, object b, triangle b, kind (an index into `kinds.contact` of the scene), points, "
-     "first point, 0",
-     ""},
-    {Tag::contact_points, "contact_points", ScalarOfSection::float32, 8, in_frame, false,
-     "x, y, z (minus `center`), 0, unit normal x, y, z, 0", ""},
-    {Tag::impacts, "impacts", ScalarOfSection::uint32, 8, in_frame, false,
-     "object a, element a (2), object b, element b (2), kind (an index into `kinds.impact`), certainty (into "
-     "`kinds.certainty`). An edge has two vertices, other elements repeat their number",
-     ""},
-    {Tag::impact_points, "impact_points", ScalarOfSection::float32, 8, in_frame, false,
-     "x, y, z, time in the step, unit normal x, y, z, 0", ""},
+    {Tag::column, "column", ScalarOfSection::uint8, 0, in_frame, true,
+     "a column of a list of the result, with scalars of its own; the object is its number", "with rows"},
     {Tag::candidates, "candidates", ScalarOfSection::uint32, 4, in_frame, false,
      "object a, triangle a, object b, triangle b", "when requested"},
     {Tag::scene_regions, "scene_regions", ScalarOfSection::float32, 8, in_frame, false,
@@ -89,22 +91,6 @@ inline constexpr std::array section_forms = std::to_array<SectionForm>({
      "one end of an edge, level, the other end, triangles (−1 for inner cells)", "when requested"},
     {Tag::colliding_edges, "colliding_edges", ScalarOfSection::float32, 8, in_frame, true,
      "as `octree_edges`: nodes that collide in the narrow phase", "when requested; with such nodes"},
-    {Tag::proximity_pairs, "proximity_pairs", ScalarOfSection::uint32, 2, in_frame, false, "objects a, b",
-     ""},
-    {Tag::proximity_points, "proximity_points", ScalarOfSection::float32, 8, in_frame, false,
-     "closest point of a, distance, closest point of b, distance / sum of the margins", ""},
-    {Tag::penetrations, "penetrations", ScalarOfSection::uint32, 4, in_frame, false,
-     "object a, vertex, object b, nearest triangle", ""},
-    {Tag::penetration_points, "penetration_points", ScalarOfSection::float32, 8, in_frame, false,
-     "the vertex, depth, the closest point of b, 0", ""},
-    {Tag::curves, "curves", ScalarOfSection::uint32, 8, in_frame, false,
-     "object a, object b, kind of the curve (an index into `kinds.curve`), contacts, first enclosed vertex, "
-     "enclosed vertices of a, of b, 0",
-     ""},
-    {Tag::curve_points, "curve_points", ScalarOfSection::float32, 8, in_frame, false,
-     "centroid of the curve, depth, unit normal x, y, z, area", ""},
-    {Tag::enclosed_vertices, "enclosed_vertices", ScalarOfSection::uint32, 1, in_frame, false,
-     "vertices that curves enclose, first those of a, then those of b", ""},
     {Tag::field_values, "field_values", ScalarOfSection::float32, 1, in_frame, true,
      "value of a vertex or a triangle, NaN for none", "when a field of numbers is chosen; with values"},
     {Tag::field_vectors, "field_vectors", ScalarOfSection::float32, 3, in_frame, true,
@@ -115,7 +101,7 @@ inline constexpr std::array section_forms = std::to_array<SectionForm>({
      "of the pin",
      "with rows"},
     {Tag::series, "series", ScalarOfSection::float64, 0, in_series, false,
-     "one row for each frame, in the order of the names in `series` of the scene", ""},
+     "one row for each frame: a float64 for each name in `series` of the scene", ""},
     {Tag::series_contact_begin, "series_contact_begin", ScalarOfSection::uint32, 3, in_series, false,
      "frame, object a, object b", ""},
     {Tag::series_contact_end, "series_contact_end", ScalarOfSection::uint32, 3, in_series, false,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sources/extent.hpp"
+#include "supple/result_lists.hpp"
 
 namespace supple::viewer {
 namespace {
@@ -24,12 +25,11 @@ class Gathering {
   Gathering(const DetectResult& result, const Pin& pin) : result_(result), pin_(pin) {}
 
   PinValues values() {
-    add_contacts();
-    add_continuous();
-    if (pin_.contact.empty()) {
-      add_proximity();
-      add_penetrations();
-    }
+    for_each_list([&](const auto& list, auto member) {
+      if constexpr (requires { member(result_).front().normal, member(result_).front().object_a; }) {
+        if (list.answers != ContactKinds::none) add_all(member(result_));
+      }
+    });
     add_curves();
     if (const double length = norm(normal_); length > 0) {
       values_.normal_x = normal_.x / length;
@@ -45,6 +45,8 @@ class Gathering {
     if (pin_.objects.size() == 1) return a.index == first || b.index == first;
     return (a.index == first && b.index == last) || (a.index == last && b.index == first);
   }
+  /// Contacts of other kinds cannot be followed alone.
+  bool is_wanted(const auto&) const { return pin_.contact.empty(); }
   bool is_wanted(const Contact& c) const {
     const std::vector<std::uint32_t>& key = pin_.contact;
     return key.empty() || (key.size() == 4 && key[0] == c.object_a.index && key[1] == c.triangle_a &&
@@ -64,50 +66,31 @@ class Gathering {
     normal_ = normal_ + (is_first ? 1.0 : -1.0) * normal;
   }
 
-  void add_contacts() {
-    for (const ContactGroup& group : result_.groups) {
-      if (!concerns(group.a, group.b)) continue;
-      for (const Contact& contact : result_.contacts_of(group)) {
-        if (!is_wanted(contact)) continue;
-        ++values_.contacts;
-        add_normal(contact.object_a, contact.normal);
-        found_ = static_cast<std::uint32_t>(&contact - result_.contacts.data());
-        const auto points = result_.points_of(contact);
-        if (points.size() != 2) continue;
-        const double length = norm(points[1].position - points[0].position);
-        values_.length = std::isnan(values_.length) ? length : values_.length + length;
-      }
+  /// Adds the rows of one kind of contacts. They are sorted by their objects.
+  template <class Row>
+  void add_all(std::span<const Row> rows) {
+    const auto objects = [](const Row& row) { return std::pair(row.object_a, row.object_b); };
+    for (auto row = rows.begin(); row != rows.end();) {
+      const auto end = std::ranges::upper_bound(row, rows.end(), objects(*row), {}, objects);
+      if (concerns(row->object_a, row->object_b))
+        std::for_each(row, end, [&](const Row& each) { add(each); });
+      row = end;
     }
   }
-  void add_continuous() {
-    for (const ContactGroup& group : result_.continuous_groups) {
-      if (!concerns(group.a, group.b)) continue;
-      for (const ContinuousContact& contact : result_.continuous_contacts_of(group)) {
-        if (!is_wanted(contact)) continue;
-        ++values_.contacts;
-        add_normal(contact.object_a, contact.normal);
-        values_.impact_time = smaller(values_.impact_time, contact.toi);
-      }
-    }
-  }
-  void add_proximity() {
-    for (const ContactGroup& group : result_.proximity_groups) {
-      if (!concerns(group.a, group.b)) continue;
-      for (const ProximityPair& pair : result_.proximity_pairs_of(group)) {
-        ++values_.contacts;
-        add_normal(pair.object_a, pair.normal);
-        values_.gap = smaller(values_.gap, pair.distance);
-      }
-    }
-  }
-  void add_penetrations() {
-    for (const PenetrationGroup& group : result_.penetration_groups) {
-      if (!concerns(group.a, group.b)) continue;
-      for (const Penetration& penetration : result_.penetrations_of(group)) {
-        ++values_.contacts;
-        add_normal(penetration.object_a, penetration.normal);
-        values_.depth = larger(values_.depth, penetration.depth);
-      }
+  template <class Row>
+  void add(const Row& row) {
+    if (!is_wanted(row)) return;
+    ++values_.contacts;
+    add_normal(row.object_a, row.normal);
+    if constexpr (requires { row.toi; }) values_.impact_time = smaller(values_.impact_time, row.toi);
+    if constexpr (requires { row.distance; }) values_.gap = smaller(values_.gap, row.distance);
+    if constexpr (requires { row.depth; }) values_.depth = larger(values_.depth, row.depth);
+    if constexpr (requires { result_.points_of(row); }) {
+      found_ = static_cast<std::uint32_t>(&row - result_.contacts.data());
+      const auto points = result_.points_of(row);
+      if (points.size() != 2) return;
+      const double length = norm(points[1].position - points[0].position);
+      values_.length = std::isnan(values_.length) ? length : values_.length + length;
     }
   }
   /// The curves of the objects, or those that go through the contact.

@@ -67,6 +67,12 @@ export function runProgram(supple, args, options = {}) {
   });
 }
 
+/** Object and triangle of both sides of each contact in the newest frame. */
+export const contactsIn = (page) => page.evaluate(() => {
+  const { object_a, triangle_a, object_b, triangle_b } = supple.model.frame.lists.contacts.columns;
+  return Array.from(object_a, (object, i) => [object, triangle_a[i], object_b[i], triangle_b[i]]);
+});
+
 /** WebGL in software, or on the graphics card when SUPPLE_GPU is set. */
 const SOFTWARE_FLAGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-gpu-compositing"];
 export const CHROMIUM_FLAGS = ["--no-sandbox", ...(process.env.SUPPLE_GPU ? [] : SOFTWARE_FLAGS)];
@@ -342,7 +348,7 @@ export function textMessage(kind, json) {
   const length = 32 + Math.ceil(text.length / 16) * 16;
   const message = Buffer.alloc(length);
   message.writeUInt32LE(0x4c505553, 0);
-  message.writeUInt16LE(1, 4);
+  message.writeUInt16LE(2, 4);
   message.writeUInt16LE(kind, 6);
   message.writeUInt32LE(length, 8);
   message.writeUInt32LE(1, 12);

@@ -22,7 +22,7 @@ async function picture(stage, scene) {
   const page = await open(stage, scene);
   const first = performance.now() - begin;
   await pause(page);
-  await until(page, () => supple.model.frame.contacts.length === 0);
+  await until(page, () => supple.model.frame.lists.contacts.count === 0);
   const { moved, turned, picked, objects, triangles, calls } = await page.evaluate(() => {
     const gl = document.querySelector("canvas.view").getContext("webgl2");
     const pixel = new Uint8Array(4);

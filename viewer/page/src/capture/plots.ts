@@ -3,6 +3,8 @@ import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
 import type { Model } from "../model";
 import { titleOf, type Pins } from "../pins";
+import { formOf } from "../protocol/lists";
+import { ANSWERS, hasColumn } from "../records";
 import { CSS_DPI } from "./figure";
 import { goTo } from "./frames";
 import { millimetresOf } from "./pen";
@@ -28,7 +30,7 @@ const labelOf = (name: string): string => name.replace(/_b$/, " of B").replace(/
 /** The plots that the series of this run allow. */
 export function plotsOf({ scene, history: { names } }: Model): PlotForm[] {
   const has = (wanted: string[]) => wanted.flatMap((name) => [name, `${name}_b`]).filter((name) => names.includes(name));
-  const near = scene!.contacts.includes("proximity") ? ["proximity_pairs"] : [];
+  const near = ANSWERS.filter((list) => hasColumn(list, "distance") && scene!.contacts.includes(formOf(list).answers));
   return [
     { name: "pairs", title: "Object pairs", columns: has(["object_pairs"]), scale: 1 },
     { name: "contacts", title: "Contacts and candidates", columns: has(["contacts", "candidate_pairs", ...near]), scale: 1 },

@@ -1,6 +1,7 @@
 /** The numbers of the chosen field in the newest frame, and the range that its colours cover. */
 import type { Model, ObjectState } from "../model";
 import type { FieldForm } from "../protocol/field_form";
+import { columnOf, type Numbers } from "../protocol/lists";
 import type { FrameMessage } from "../protocol/messages";
 import { isDiverging, type MapName } from "./colour_maps";
 
@@ -20,8 +21,8 @@ export interface FieldData {
   /** The numbers of vertices or triangles by object, or the lengths of their vectors. */
   values: Map<number, Float32Array>;
   vectors: Map<number, Float32Array>;
-  /** Rows of 8 numbers for contacts, which begin with the place. */
-  rows: Float32Array;
+  /** A number for each row of a list. */
+  ofRows: ArrayLike<number>;
   /** Of all finite values; not finite when there are none. */
   lowest: number;
   highest: number;
@@ -29,30 +30,27 @@ export interface FieldData {
   hasGaps: boolean;
 }
 
-export const COLUMNS = 8;
-
 /** What the numbers of a field are, with their unit. */
 export const titleOf = ({ label, vector, unit }: FieldForm): string => `${label}${vector ? ", length of the vector" : ""}${unit ? ` (${unit})` : ""}`;
 
 /** The length of each vector. */
-function lengthsOf(vectors: Float32Array): Float32Array {
+function lengthsOf(vectors: Numbers): Float32Array {
   const lengths = new Float32Array(vectors.length / 3);
   for (let i = 0; i < lengths.length; ++i) lengths[i] = Math.hypot(vectors[3 * i]!, vectors[3 * i + 1]!, vectors[3 * i + 2]!);
   return lengths;
 }
 
 function collect(form: FieldForm, frame: FrameMessage, counts: number[]): FieldData {
-  const data: FieldData = { form, values: new Map(), vectors: new Map(), rows: new Float32Array(0), lowest: Infinity, highest: -Infinity, hasGaps: false };
+  const data: FieldData = { form, values: new Map(), vectors: new Map(), ofRows: [], lowest: Infinity, highest: -Infinity, hasGaps: false };
   const add = (value: number) => {
     if (!Number.isFinite(value)) return void (data.hasGaps = true);
     if (value < data.lowest) data.lowest = value;
     if (value > data.highest) data.highest = value;
   };
   if (form.element === "contact") {
-    const name = form.section!.replace(/_(.)/g, (_, letter: string) => letter.toUpperCase());
-    const rows = (frame as unknown as Record<string, unknown>)[name];
-    if (rows instanceof Float32Array) data.rows = rows;
-    for (let at = form.column!; at < data.rows.length; at += COLUMNS) add(data.rows[at]!);
+    const numbers = frame.lists[form.list!].columns[form.column!]!;
+    data.ofRows = columnOf(form.list!, form.column!)!.width === 3 ? lengthsOf(numbers) : numbers;
+    for (let place = 0; place < data.ofRows.length; ++place) add(data.ofRows[place]!);
     return data;
   }
   data.vectors = frame.fieldVectors;

@@ -1,8 +1,11 @@
 /** The marks of a field: arrows for vectors, coloured dots for contacts. */
+import { pointsOf } from "../contacts";
 import type { Model } from "../model";
+import type { Rows } from "../protocol/lists";
+import { objectAt, SIDES } from "../records";
 import type { Dots, Lines } from "../view/marks";
 import { colourAt, type MapName } from "./colour_maps";
-import { COLUMNS, rangeOf, readField } from "./fields";
+import { rangeOf, readField } from "./fields";
 
 /** The colours of dots. A shader has room for so many. */
 export const DOT_COLOURS = 64;
@@ -39,14 +42,6 @@ export function fillArrows(arrows: Lines, model: Model): void {
   });
 }
 
-/** Whether both objects of a contact are visible; by its number. */
-function visibility({ frame, objects }: Model, section = ""): (contact: number) => boolean {
-  if (!frame) return () => false;
-  const [ids, stride, second] =
-    section === "proximity_points" ? [frame.proximityPairs, 2, 1] as const : section === "impact_points" ? [frame.impacts, 8, 3] as const : [frame.curves, 8, 1] as const;
-  return (contact) => [0, second].every((side) => objects[ids[stride * contact + side]!]?.visible);
-}
-
 const coloured = new WeakMap<Dots, MapName>();
 
 /** A dot at each contact. */
@@ -54,19 +49,19 @@ export function fillDots(dots: Dots, model: Model): void {
   if (coloured.get(dots) !== model.field.map) dots.colours = dotColours(model.field.map);
   coloured.set(dots, model.field.map);
   const data = readField(model);
-  const rows = data?.rows ?? new Float32Array(0);
+  const { frame, objects } = model;
+  const rows: Rows | null = data?.form.list && frame ? frame.lists[data.form.list] : null;
   const [low, high] = data ? rangeOf(data, model.field) : [0, 0];
-  const isShown = visibility(model, data?.form.section);
   dots.size = model.pointSize + 6;
-  dots.fill(rows.length / COLUMNS, (into) => {
-    let at = 0;
-    for (let from = 0; from < rows.length; from += COLUMNS) {
-      const value = rows[from + data!.form.column!]!;
-      if (!Number.isFinite(value) || !isShown(from / COLUMNS)) continue;
-      into.set(rows.subarray(from, from + 3), at);
-      into[at + 3] = Math.round((DOT_COLOURS - 1) * (high > low ? Math.max(0, Math.min(1, (value - low) / (high - low))) : 0));
-      at += 4;
+  dots.fill(rows?.count ?? 0, (into) => {
+    let count = 0;
+    for (let place = 0; place < rows!.count; ++place) {
+      const value = data!.ofRows[place]!;
+      if (!Number.isFinite(value) || !SIDES.every((side) => objects[objectAt(rows!, side, place)]!.visible)) continue;
+      into.set(pointsOf(frame!, objects, rows!, place)[0]!, 4 * count);
+      into[4 * count + 3] = Math.round((DOT_COLOURS - 1) * (high > low ? Math.max(0, Math.min(1, (value - low) / (high - low))) : 0));
+      count += 1;
     }
-    return at / 4;
+    return count;
   });
 }

@@ -1,9 +1,12 @@
 /** What is below the resting pointer: the surface or the mark, with its values in the newest frame. */
-import { hasImpacts, keyAt, kindAt, pointsAt, sidesOf } from "../contacts";
+import { pointsOf, selectableIn, shareOfMargins } from "../contacts";
 import { readField, titleOf } from "../fields/fields";
 import type { Model } from "../model";
+import { formOf, type Rows } from "../protocol/lists";
+import { hasColumn, kindAt, numberAt, objectAt, SIDES, sidesAt, vectorAt, type ElementKind } from "../records";
 import type { Hit } from "../view/picking";
 import type { MarkHit, Pointing } from "../view/pointing";
+import { styleOf } from "../view/styles";
 import { h, readable } from "./dom";
 
 const REST_MILLISECONDS = 150;
@@ -16,6 +19,10 @@ const QUICK_MILLISECONDS = 20;
 const APART = 14;
 
 type Line = [name: string, value: string];
+
+/** What readers call some columns. */
+const NAMES: Record<string, string> = { distance: "gap", toi: "time in step" };
+const nameOf = (kind: ElementKind): string => (kind === "face" ? "triangle" : kind);
 
 const rounded = (value: number): string => readable(Number(value.toPrecision(5)));
 const vector = (numbers: ArrayLike<number>): string => Array.from(numbers, (x) => readable(Number(x.toPrecision(4)))).join(", ");
@@ -123,44 +130,29 @@ export class Hover {
     return lines;
   }
 
-  /** A name with the unit of a field. */
-  private withUnit(name: string, field: string): string {
-    const unit = this.model.scene!.fields.find(({ key }) => key === field)?.unit;
-    return unit ? `${name} (${unit})` : name;
+  /** The objects, what the row is, its elements, and its numbers with their units. */
+  private ofMark({ list, place }: MarkHit): [string, Line[]] {
+    const frame = this.model.frame!;
+    const rows: Rows = frame.lists[list];
+    if (rows === selectableIn(frame)) return this.ofContact(rows, place);
+    const { words, joins, hidesElements } = styleOf(list);
+    const lines: Line[] = [["kind", words?.[1] ?? (hasColumn(list, "kind") ? `${kindAt(rows, place)} ${formOf(list).item}` : kindAt(rows, place))]];
+    for (const { kind, elements } of (!hidesElements && sidesAt(rows, place)) || []) lines.push([nameOf(kind), elements.join("–")]);
+    for (const { name, scalar, width, unit, is_position } of [...formOf(list).columns].sort((p, q) => p.width - q.width)) {
+      if (scalar !== "float32" || is_position || name === "normal") continue;
+      const value = width === 1 ? numberAt(rows, name, place)! : Math.hypot(...vectorAt(rows, name, place));
+      lines.push([`${NAMES[name] ?? name.replace(/_/g, " ")}${unit && ` (${unit})`}`, rounded(value)]);
+    }
+    if (hasColumn(list, "distance")) lines.push(["of margins", `${Math.round(100 * shareOfMargins(this.model.scene!, rows, place))} %`]);
+    if (hasColumn(list, "normal")) lines.push(["normal", vector(vectorAt(rows, "normal", place))]);
+    return [SIDES.map((side) => this.nameOf(objectAt(rows, side, place))).join(` ${joins ?? "and"} `), lines];
   }
 
-  private ofMark({ kind, place }: MarkHit): [string, Line[]] {
-    const frame = this.model.frame!;
-    const from = 8 * place;
-    if (kind === "proximity") {
-      const [a, b] = frame.proximityPairs.subarray(2 * place);
-      const row = frame.proximityPoints.subarray(from, from + 8);
-      const apart = [0, 1, 2].map((axis) => (row[axis]! - row[4 + axis]!) / (row[3]! || 1));
-      return [`${this.nameOf(a!)} and ${this.nameOf(b!)}`, [["kind", "near"], [this.withUnit("gap", "gap"), rounded(row[3]!)], ["of margins", `${Math.round(100 * row[7]!)} %`], ["normal", vector(apart)]]];
-    }
-    if (kind === "penetrations") {
-      const [a, vertex, b, triangle] = frame.penetrations.subarray(4 * place);
-      const row = frame.penetrationPoints.subarray(from, from + 8);
-      const out = [0, 1, 2].map((axis) => (row[4 + axis]! - row[axis]!) / (row[3]! || 1));
-      return [`${this.nameOf(a!)} in ${this.nameOf(b!)}`, [["kind", "vertex inside"], ["vertex", String(vertex)], ["triangle", String(triangle)], [this.withUnit("depth", "depth"), rounded(row[3]!)], ["normal", vector(out)]]];
-    }
-    if (kind === "curves") {
-      const [a, b, word] = frame.curves.subarray(from);
-      const row = frame.curvePoints.subarray(from, from + 8);
-      return [`${this.nameOf(a!)} and ${this.nameOf(b!)}`, [["kind", `${this.model.scene!.kinds.curve[word!]} curve`], [this.withUnit("depth", "curve_depth"), rounded(row[3]!)], [this.withUnit("area", "curve_area"), rounded(row[7]!)], ["normal", vector(row.subarray(4, 7))]]];
-    }
-    return this.ofContact(place);
-  }
-
-  private ofContact(place: number): [string, Line[]] {
-    const frame = this.model.frame!;
-    const { kinds } = this.model.scene!;
-    const sides = sidesOf(keyAt(frame, place), kinds);
-    const { data, first } = pointsAt(frame, place);
-    const row = data.subarray(8 * first, 8 * first + 8);
-    const lines: Line[] = sides.map(({ object, elements, isFace }) => [this.nameOf(object), `${isFace ? "triangle" : elements.length > 1 ? "edge" : "vertex"} ${elements.join("–")}`]);
-    lines.push(["at", this.placeOf(row)], ["normal", vector(row.subarray(4, 7))]);
-    if (hasImpacts(frame)) lines.push(["time in step", rounded(row[3]!)]);
-    return [`Contact: ${kindAt(frame, place, kinds)}`, lines];
+  private ofContact(rows: Rows, place: number): [string, Line[]] {
+    const lines: Line[] = sidesAt(rows, place)!.map(({ object, kind, elements }) => [this.nameOf(object), `${nameOf(kind)} ${elements.join("–")}`]);
+    const [point] = pointsOf(this.model.frame!, this.model.objects, rows, place);
+    lines.push(["at", this.placeOf(point!)], ["normal", vector(vectorAt(rows, "normal", place))]);
+    if (hasColumn(rows.list, "toi")) lines.push([NAMES["toi"]!, rounded(numberAt(rows, "toi", place)!)]);
+    return [`Contact: ${kindAt(rows, place)}`, lines];
   }
 }

@@ -1,9 +1,10 @@
 /** Ids and values of the picked elements, and the explanation why two triangles are or are not a contact. */
 import type { Client } from "../client";
 import { OKABE_ITO } from "../colours";
-import { findContact, hasImpacts, kindAt, pointsAt, sidesOf } from "../contacts";
+import { findContact, pointsOf, selectableIn, sidesOf } from "../contacts";
 import type { Explanation, Measurement, Model } from "../model";
 import type { Pins } from "../pins";
+import { hasColumn, kindAt, numberAt, vectorAt } from "../records";
 import { STAGES } from "../stages";
 import { h, readable, refill } from "./dom";
 
@@ -197,22 +198,18 @@ export class Inspector {
   private contactRows(): Row[] {
     const { contact, frame } = this.model;
     if (!contact || !frame) return [];
-    const { kinds } = this.model.scene!;
-    const sides = sidesOf(contact, kinds).map(({ object, elements }) => `${this.model.objects[object]!.name} ${elements.join("–")}`);
-    const rows: Row[] = [["between", sides.join(" and ")]];
+    const sides = sidesOf(contact).map(({ object, elements }) => `${this.model.objects[object]!.name} ${elements.join("–")}`);
+    const table: Row[] = [["between", sides.join(" and ")]];
     const place = findContact(frame, contact);
-    if (place < 0) return [...rows, ["now", "no longer a contact"]];
-    rows.push(["kind", kindAt(frame, place, kinds)]);
-    const { data, first, count } = pointsAt(frame, place);
+    if (place < 0) return [...table, ["now", "no longer a contact"]];
+    const rows = selectableIn(frame);
+    const points = pointsOf(frame, this.model.objects, rows, place);
     const center = this.model.scene!.center;
-    rows.push(["points", String(count)]);
-    for (let k = 0; k < count; ++k) {
-      const at = 8 * (first + k);
-      rows.push([k === 0 ? "at" : "", [0, 1, 2].map((axis) => readable(data[at + axis]! + center[axis]!)).join(", ")]);
-    }
-    if (count > 0) rows.push(["normal", show(Array.from(data.subarray(8 * first + 4, 8 * first + 7)))]);
-    if (hasImpacts(frame)) rows.push(["time in step", readable(data[8 * first + 3]!)]);
-    return rows;
+    table.push(["kind", kindAt(rows, place)], ["points", String(points.length)]);
+    points.forEach((point, k) => table.push([k === 0 ? "at" : "", point.map((x, axis) => readable(x + center[axis]!)).join(", ")]));
+    if (points.length > 0) table.push(["normal", show(Array.from(vectorAt(rows, "normal", place)))]);
+    if (hasColumn(rows.list, "toi")) table.push(["time in step", readable(numberAt(rows, "toi", place)!)]);
+    return table;
   }
 
   /** The heading of what the pin of the selection is about, with a button that adds or removes it. */

@@ -1,6 +1,7 @@
 /** The descent of the narrow phase into the octrees of two objects, level by level (Figure 4 of the paper). */
 import type { Client } from "../client";
 import { ALL_LEVELS, LEAVES, type Model } from "../model";
+import { objectAt, SIDES } from "../records";
 import { h, readable, refill } from "./dom";
 
 /** Interval between updates while things move. */
@@ -56,8 +57,8 @@ export class NodePairs {
   /** Offers the pairs of the broad phase, and the chosen pair as long as the scene is the same. */
   private listPairs(): void {
     const chosen = this.pairs.value;
-    const found = this.model.frame?.objectPairs ?? new Uint32Array(0);
-    const values = Array.from({ length: found.length / 2 }, (_, i) => `${found[2 * i]!} ${found[2 * i + 1]!}`);
+    const found = this.model.frame?.lists.object_pairs;
+    const values = Array.from({ length: found?.count ?? 0 }, (_, place) => SIDES.map((side) => objectAt(found!, side, place)).join(" "));
     if (chosen !== "" && !values.includes(chosen)) values.unshift(chosen);
     const name = (value: string) => value.split(" ").map((object) => this.model.objects[Number(object)]!.name).join(" and ");
     this.pairs.replaceChildren(h("option", { value: "" }, "two objects…"), ...values.map((value) => h("option", { value }, name(value))));

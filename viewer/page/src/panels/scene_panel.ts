@@ -1,48 +1,13 @@
 /** The objects of the scene and the layers drawn over them. */
-import { GAPS, levelColour, LEVELS, MARKS } from "../colours";
+import { GAPS, levelColour, LEVELS } from "../colours";
 import { FieldPanel } from "../fields/field_panel";
 import type { Layer, Model } from "../model";
-import type { FrameMessage } from "../protocol/messages";
+import { formOf } from "../protocol/lists";
+import { LAYER_ROWS, type LayerRow } from "../view/styles";
 import { h, readable } from "./dom";
 import { ObjectList } from "./tables/object_list";
 import { TouchLine } from "./touch_line";
 import { ViewOptions } from "./view_options";
-
-interface LayerRow {
-  layer: Layer;
-  label: string;
-  key: string;
-  colour: string;
-  hint: string;
-  /** Only contacts of these kinds fill the layer. */
-  kinds?: string[];
-  /** The number of elements in a frame. */
-  has?: (frame: FrameMessage) => number;
-}
-
-const INTERSECTIONS = ["intersection", "penetration"];
-const CONTACTS = [...INTERSECTIONS, "continuous"];
-const contactsIn = ({ contacts, impacts }: FrameMessage): number => contacts.length + impacts.length;
-const pointsIn = ({ contactPoints, impactPoints }: FrameMessage): number => contactPoints.length + impactPoints.length;
-
-/** What is drawn, then marks of contacts, then the stages of the search. */
-export const LAYER_ROWS: LayerRow[] = [
-  { layer: "surface", label: "Surfaces", key: "S", colour: "", hint: "The objects" },
-  { layer: "wireframe", label: "Wireframe", key: "X", colour: "", hint: "The edges of all triangles" },
-  { layer: "triangles", label: "Intersecting triangles", key: "I", colour: MARKS.contact, hint: "Triangles that have a contact", kinds: CONTACTS, has: contactsIn },
-  { layer: "points", label: "Contact points", key: "D", colour: MARKS.contact, hint: "Extreme points of the intersection of two triangles", kinds: CONTACTS, has: pointsIn },
-  { layer: "normals", label: "Contact normals", key: "Y", colour: MARKS.normal, hint: "The normal at each contact point", kinds: CONTACTS, has: pointsIn },
-  { layer: "segments", label: "Contact segments", key: "U", colour: MARKS.contact, hint: "Segments and outlines in which pairs of triangles intersect", kinds: INTERSECTIONS, has: ({ contactPoints }) => contactPoints.length },
-  { layer: "proximity", label: "Proximity pairs", key: "M", colour: "gaps", hint: "Closest points within the margins. Rings are coloured by distance: brown up to a quarter of the margins, then olive, green and blue", kinds: ["proximity"], has: ({ proximityPairs }) => proximityPairs.length },
-  { layer: "depths", label: "Depths", key: "E", colour: MARKS.depth, hint: "From each vertex inside a solid object to the closest point of its surface", kinds: ["penetration"], has: ({ penetrations }) => penetrations.length },
-  { layer: "curves", label: "Curves", key: "A", colour: MARKS.curve, hint: "The triangles at the vertices that each curve of intersections encloses, and an arrow along the normal, as far as the first object must move to pass the second", kinds: ["penetration"], has: ({ curves }) => curves.length },
-  { layer: "pairs", label: "Object pairs", key: "P", colour: MARKS.pair, hint: "Objects whose volumes overlap" },
-  { layer: "candidates", label: "Candidate pairs", key: "C", colour: MARKS.candidate, hint: "Pairs of triangles that the exact stage decides" },
-  { layer: "nodes", label: "Colliding nodes", key: "K", colour: "levels", hint: "Nodes of two octrees whose volumes overlap in the narrow phase: the leaves, or a level chosen under Narrow phase" },
-  { layer: "octree", label: "Object octrees", key: "B", colour: "levels", hint: "Cells of the objects' octrees, coloured by level" },
-  { layer: "regions", label: "Scene octree", key: "N", colour: "levels", hint: "Regions that the broad phase used in this frame, coloured by level; none unless the octree ran", has: ({ text }) => (text.broad_phase_method === "octree" ? 1 : 0) },
-  { layer: "vertices", label: "Colliding vertices", key: "J", colour: MARKS.vertex, hint: "The output of the paper: vertices of colliding octree nodes" },
-];
 
 /** The text for a failure of the session: its message, and the layers that it switched off. */
 export function sayFailure({ text, layers }: { text: string; layers: (Layer | "field")[] }): string {
@@ -106,12 +71,12 @@ export class ScenePanel {
   }
 
   /** Whether the scene fills a layer. When it tests other kinds of contacts, too, a layer of intersections waits for the first one. */
-  private isProduced({ layer, kinds, has }: LayerRow): boolean {
+  private isProduced({ layer, lists = [], kinds = lists.map((list) => formOf(list).answers), has }: LayerRow): boolean {
     const { frame, scene } = this.model;
-    if (frame && has && has(frame) > 0) this.seen.add(layer);
-    if (!has || this.seen.has(layer)) return true;
+    if (frame && (has?.(frame) || lists.some((list) => frame.lists[list].count > 0))) this.seen.add(layer);
+    if ((!has && lists.length === 0) || this.seen.has(layer)) return true;
     const asked = scene?.contacts.split(",") ?? [];
-    return asked.some((kind) => kinds?.includes(kind) && (kind !== "intersection" || asked.length === 1));
+    return asked.some((kind) => kinds.includes(kind) && (kind !== "intersection" || asked.length === 1));
   }
 
   /** Moves the rows of layers that the scene does not produce to “More layers”. */
@@ -176,10 +141,7 @@ export class ScenePanel {
   showCounts(drawn: Record<string, number>, isFlat: boolean): void {
     this.view.sayFlat(isFlat && this.model.smooth);
     const { frame, layers } = this.model;
-    const of: Partial<Record<Layer, number>> = {
-      regions: drawn["regions"]!, octree: drawn["boxes"]! + drawn["balls"]!, nodes: drawn["nodeBoxes"]! + drawn["nodeBalls"]!, candidates: drawn["candidates"]!, triangles: drawn["triangles"]!,
-      points: drawn["points"]!, normals: drawn["normals"]!, segments: drawn["segments"]!, proximity: drawn["proximity"]!, depths: drawn["depths"]!, curves: drawn["curves"]!, vertices: drawn["vertices"]!, pairs: drawn["pairs"]!,
-    };
+    const of: Record<string, number> = { ...drawn, octree: drawn["boxes"]! + drawn["balls"]!, nodes: drawn["nodeBoxes"]! + drawn["nodeBalls"]! };
     for (const [layer, element] of this.counts) {
       const count = of[layer];
       const text = layers[layer] && count !== undefined ? readable(count) : "";

@@ -35,10 +35,11 @@ export class TouchLine {
   /** An empty list is a result only when something was tested. */
   private nothing(): string {
     const { contacts } = this.model.scene!;
-    const { objectPairs, text: { untested } } = this.model.frame!;
+    const { lists, text: { untested } } = this.model.frame!;
     if (contacts === "none") return "nothing is tested: contacts are switched off";
     const tested = contacts.split(",").filter((kind) => !untested.some((entry) => entry.kind === kind));
     if (tested.length === 0) return `nothing was tested: ${[...new Set(untested.map(({ reason }) => reason.replace(/_/g, " ")))].join(", ")}`;
-    return objectPairs.length > 0 ? `nothing touches: ${pairs(objectPairs.length / 2)} tested` : "nothing touches: all are apart";
+    const { count } = lists.object_pairs;
+    return count > 0 ? `nothing touches: ${pairs(count)} tested` : "nothing touches: all are apart";
   }
 }

@@ -1,4 +1,5 @@
 /** The fields of a scene: numbers or vectors of its vertices, triangles or contacts. */
+import { columnOf, LIST_NAMES, type ListName } from "./lists";
 
 export interface FieldForm {
   key: string;
@@ -8,18 +9,18 @@ export interface FieldForm {
   unit: string;
   element: "vertex" | "face" | "contact";
   vector: boolean;
-  /** The section of a frame with the values of contacts, and where they are in its rows. */
-  section?: string;
-  column?: number;
+  /** The list of frames with the values of contacts, and their column; of vectors, the values are their lengths. */
+  list?: ListName;
+  column?: string;
 }
 
 const isText = (value: unknown): value is string => typeof value === "string";
 
 export function isFieldForm(value: unknown): value is FieldForm {
   if (typeof value !== "object" || value === null) return false;
-  const { key, label, doc, unit, element, vector, section, column } = value as FieldForm;
+  const { key, label, doc, unit, element, vector, list, column } = value as FieldForm;
   return [key, label, doc, unit].every(isText) && ["vertex", "face", "contact"].includes(element) && typeof vector === "boolean" &&
-    (element === "contact" ? isText(section) && Number.isInteger(column) && column! >= 0 && column! < 8 : section === undefined);
+    (element === "contact" ? LIST_NAMES.includes(list!) && columnOf(list!, column!) !== undefined : list === undefined);
 }
 
 /** A sentence about numbers of a field that do not fit the scene, or null. */

@@ -1,6 +1,7 @@
 /** The messages of the session (viewer/PROTOCOL.md): typed arrays that view the message, and texts. */
 import type { FieldForm } from "./field_form";
-import type { FORMS, Form } from "./sections";
+import type { Lists } from "./lists";
+import type { ARRAYS, FORMS, Form } from "./sections_generated";
 
 export const NONE = 0xffffffff;
 
@@ -13,6 +14,8 @@ export interface SceneObject {
   waves?: boolean;
   rigid?: boolean;
   self_collision: boolean;
+  /** Within which its pairs are near. */
+  margin: number;
   /** The object of a program is gone; its number stays. */
   removed?: boolean;
 }
@@ -30,15 +33,6 @@ export interface Setting {
   words?: string[];
   /** A change restarts the simulation. */
   restarts: boolean;
-}
-
-/** The words of the kinds in frames, in the order of their numbers. */
-export interface Kinds {
-  contact: string[];
-  certainty: string[];
-  curve: string[];
-  /** The elements of a and of b: vertex, edge or face. */
-  impact: [string, string][];
 }
 
 /** An event that can pause a program: on or off, or the number above which it happens, null for never. */
@@ -94,7 +88,6 @@ export interface SceneText {
   contacts: string;
   /** What the command `set` takes. The scene has the value of each, by its key. */
   settings: Setting[];
-  kinds: Kinds;
   /** What the command `layers` takes as field. */
   fields: FieldForm[];
   can: string[];
@@ -152,16 +145,16 @@ export interface SceneMessage {
 
 type FormOfFrame = Extract<(typeof FORMS)[keyof typeof FORMS], { kinds: readonly ["frame"] }>;
 type Camel<Name> = Name extends `${infer First}_${infer Rest}` ? `${First}${Capitalize<Camel<Rest> & string>}` : Name;
-type ArrayOf<F extends Form> = InstanceType<F["array"]>;
+type ArrayOf<F extends Form> = InstanceType<(typeof ARRAYS)[F["scalar"]]>;
 /** The sections of frames as members, with camelCase names; those of each object are maps. */
 export type FrameSections = {
-  [F in FormOfFrame as F["name"] extends `${EventKind}_${"begin" | "end"}` ? never : Camel<F["name"]> & string]:
-    F["perObject"] extends true ? Map<number, ArrayOf<F>> : ArrayOf<F>;
+  [F in FormOfFrame as F["name"] extends "column" | `${EventKind}_${"begin" | "end"}` ? never : Camel<F["name"]> & string]:
+    F["is_of_object"] extends true ? Map<number, ArrayOf<F>> : ArrayOf<F>;
 };
 
-/** Missing sections are empty. Positions are present for objects that moved. */
+/** Missing sections and lists are empty. Positions are present for objects that moved. */
 export type FrameMessage = {
-  kind: "frame"; text: FrameText; events: EventData;
+  kind: "frame"; text: FrameText; events: EventData; lists: Lists;
   /** The statistics of each step that the page has not yet, row by row; `statistics` is the last row. */
   steps: Float64Array;
 } & FrameSections;

@@ -1,5 +1,7 @@
 /** Reads the message of a frame. Everything that it names must exist in the scene. */
+import { eachElement, SIDES } from "../records";
 import { faultOfField } from "./field_form";
+import { formOf, LIST_NAMES, type Rows } from "./lists";
 import { EVENT_KINDS, type EventData, type FrameMessage, type FrameText } from "./messages";
 import type { SceneCounts } from "./read_scene";
 import { fail, isCount, isNumber, isText, need, type Sections } from "./read_sections";
@@ -30,57 +32,29 @@ function frameText(json: Record<string, unknown>): FrameText {
   return f;
 }
 
-/** Every `stride` numbers contain an object and a number below its limit, at the two offsets in `at`. */
-function checkIds(name: string, data: Uint32Array, stride: number, at: [number, number], limits: number[]): void {
-  for (let i = 0; i < data.length; i += stride)
-    for (const place of at) {
-      const limit = limits[data[i + place]!];
-      if (limit === undefined || data[i + place + 1]! >= limit) fail(`its section ${name} names something that does not exist`);
-    }
-}
-
-function checkPairs(name: string, data: Uint32Array, stride: number, at: number, objects: number): void {
-  for (let i = 0; i < data.length; i += stride)
-    if (data[i + at]! >= objects || data[i + at + 1]! >= objects) fail(`its section ${name} names an object that does not exist`);
+/** Every two numbers are an object and an element of it. */
+function checkCandidates(data: Uint32Array, limits: number[]): void {
+  for (let i = 0; i < data.length; i += 2)
+    if (!(data[i + 1]! < (limits[data[i]!] ?? 0))) fail("its section candidates names something that does not exist");
 }
 
 export function checkEvents(events: EventData, objects: number): void {
   for (const kind of EVENT_KINDS)
-    for (const side of ["begin", "end"] as const) checkPairs(`${kind}_${side}`, events[kind][side], 3, 1, objects);
+    for (const side of ["begin", "end"] as const)
+      if (events[kind][side].some((object, i) => i % 3 > 0 && object >= objects)) fail(`its section ${kind}_${side} names an object that does not exist`);
 }
 
-function checkContacts(contacts: Uint32Array, points: number, kinds: number): void {
-  for (let i = 0; i < contacts.length; i += 8) {
-    if (contacts[i + 4]! >= kinds) fail("a contact has an unknown kind");
-    if (contacts[i + 5]! + contacts[i + 6]! > points) fail("a contact has points that do not exist");
+/** Objects, words and elements exist. Rows of other lists are used as far as there are any. */
+function checkRows(rows: Rows, scene: SceneCounts): void {
+  for (const { name, names, words } of formOf(rows.list).columns) {
+    const limit = names === "object" ? scene.vertices.length : words.length || Infinity;
+    if (rows.columns[name]!.some((value: number) => value >= limit)) fail(`its list ${rows.list} has an unknown ${name}`);
   }
-}
-
-function checkImpacts(impacts: Uint32Array, scene: SceneCounts): void {
-  for (let i = 0; i < impacts.length; i += 8) {
-    const kinds = scene.kinds.impact[impacts[i + 6]!];
-    if (!kinds || impacts[i + 7]! >= scene.kinds.certainty.length) fail("an impact has an unknown kind");
-    kinds.forEach((kind, side) => {
-      const limit = (kind === "face" ? scene.triangles : scene.vertices)[impacts[i + 3 * side]!];
-      const first = impacts[i + 3 * side + 1]!;
-      const second = impacts[i + 3 * side + 2]!;
-      if (limit === undefined || first >= limit || (kind === "edge" && second >= limit)) fail("an impact names an element that does not exist");
+  for (const side of SIDES)
+    eachElement(rows, side, (object, kind, first, second) => {
+      const limit = (kind === "face" ? scene.triangles : scene.vertices)[object]!;
+      if (first >= limit || second >= limit) fail(`its list ${rows.list} names an element that does not exist`);
     });
-  }
-}
-
-function checkCurves({ curves, curvePoints, enclosedVertices }: FrameMessage, scene: SceneCounts): void {
-  if (curvePoints.length !== curves.length) fail("the numbers of curves and of their points differ");
-  for (let i = 0; i < curves.length; i += 8) {
-    if (curves[i + 2]! >= scene.kinds.curve.length) fail("a curve has an unknown kind");
-    let at = curves[i + 4]!;
-    for (const side of [0, 1]) {
-      const limit = scene.vertices[curves[i + side]!];
-      if (limit === undefined) fail("a curve names an object that does not exist");
-      const vertices = enclosedVertices.subarray(at, (at += curves[i + 5 + side]!));
-      if (at > enclosedVertices.length || vertices.some((vertex) => vertex >= limit)) fail("a curve encloses a vertex that does not exist");
-    }
-  }
 }
 
 export function readFrame(sections: Sections, scene: SceneCounts): FrameMessage {
@@ -88,7 +62,7 @@ export function readFrame(sections: Sections, scene: SceneCounts): FrameMessage 
   const rows = sections.ofFrame();
   const steps = rows.statistics;
   const frame: FrameMessage = {
-    kind: "frame", text, events: sections.events(""), ...rows, steps, statistics: steps.subarray(Math.max(0, steps.length - scene.statistics)),
+    kind: "frame", text, events: sections.events(""), lists: sections.lists(), ...rows, steps, statistics: steps.subarray(Math.max(0, steps.length - scene.statistics)),
   };
   if (text.generation !== scene.generation) return frame;  // belongs to an earlier scene and will be ignored
   for (const [object, positions] of frame.positions)
@@ -100,19 +74,9 @@ export function readFrame(sections: Sections, scene: SceneCounts): FrameMessage 
   const { octreeBoxes, octreeSpheres, octreeEdges, collidingBoxes, collidingSpheres, collidingEdges } = frame;
   for (const shapes of [octreeBoxes, octreeSpheres, octreeEdges, collidingBoxes, collidingSpheres, collidingEdges])
     for (const object of shapes.keys()) if (object >= scene.vertices.length) fail("it has an octree of an object that does not exist");
-  checkPairs("object_pairs", frame.objectPairs, 2, 0, scene.vertices.length);
   checkEvents(frame.events, scene.vertices.length);
-  checkIds("contacts", frame.contacts, 8, [0, 2], scene.triangles);
-  checkContacts(frame.contacts, frame.contactPoints.length / 8, scene.kinds.contact.length);
-  checkIds("candidates", frame.candidates, 4, [0, 2], scene.triangles);
-  checkImpacts(frame.impacts, scene);
-  if (frame.impactPoints.length !== frame.impacts.length) fail("the numbers of impacts and of their points differ");
-  if (frame.proximityPairs.some((object) => object >= scene.vertices.length)) fail("a proximity pair names an object that does not exist");
-  if (frame.proximityPoints.length !== 4 * frame.proximityPairs.length) fail("the numbers of proximity pairs and of their points differ");
-  checkIds("penetrations", frame.penetrations, 4, [2, 2], scene.triangles);
-  checkIds("penetrations", frame.penetrations, 4, [0, 0], scene.vertices);
-  if (frame.penetrationPoints.length !== 2 * frame.penetrations.length) fail("the numbers of penetrations and of their points differ");
-  checkCurves(frame, scene);
+  checkCandidates(frame.candidates, scene.triangles);
+  for (const list of LIST_NAMES) checkRows(frame.lists[list], scene);
   const fault = faultOfField(text.field, frame.fieldValues, frame.fieldVectors, scene);
   if (fault) fail(fault);
   if (scene.statistics === 0 ? steps.length !== 0 : steps.length % scene.statistics !== 0) fail("its statistics are not those of the scene");

@@ -6,10 +6,10 @@ import type { AnswerMessage, FailureMessage, Message, SeriesMessage } from "./me
 import { checkEvents, readFrame } from "./read_frame";
 import { readScene, type SceneCounts } from "./read_scene";
 import { ALIGNMENT, fail, isNumber, isText, isTexts, need, readSections, type Sections } from "./read_sections";
-import { KINDS } from "./sections";
+import { KINDS } from "./sections_generated";
 
 const MAGIC = 0x4c505553;
-const VERSION = 1;
+const VERSION = 2;
 
 function readSeries(sections: Sections, scene: SceneCounts): SeriesMessage {
   const events = sections.events("series_");
@@ -32,8 +32,7 @@ function readFailure(sections: Sections): FailureMessage {
 }
 
 const NO_SCENE: SceneCounts = {
-  generation: -1, vertices: [], triangles: [], statistics: 0, series: 0, kinds: { contact: [], certainty: [], curve: [], impact: [] },
-  fields: [], faces: [],
+  generation: -1, vertices: [], triangles: [], statistics: 0, series: 0, fields: [], faces: [],
 };
 
 /**

@@ -1,6 +1,6 @@
 /** Reads the message of a scene, and keeps the sizes that frames must fit. */
 import { isFieldForm, type FieldForm } from "./field_form";
-import type { Comparison, Kinds, SceneMessage, SceneObject, SceneText, Setting } from "./messages";
+import type { Comparison, SceneMessage, SceneObject, SceneText, Setting } from "./messages";
 import { fail, isCount, isNumber, isText, isTexts, isVector, need, type Sections } from "./read_sections";
 
 /** Sizes of the scene, against which frames are validated. */
@@ -10,7 +10,6 @@ export interface SceneCounts {
   triangles: number[];
   statistics: number;
   series: number;
-  kinds: Kinds;
   fields: FieldForm[];
   /** Triangles without the edges and points of no triangle. */
   faces: number[];
@@ -28,19 +27,9 @@ export function countsOf(message: SceneMessage): SceneCounts {
     triangles: scene.objects.map((object, i) => elementsOf(message, i, object.triangles)),
     statistics: scene.statistics.length,
     series: scene.series.length,
-    kinds: scene.kinds,
     fields: scene.fields,
     faces: scene.objects.map((object) => object.triangles),
   };
-}
-
-const isElement = (value: unknown): boolean => value === "vertex" || value === "edge" || value === "face";
-
-function isKinds(value: unknown): value is Kinds {
-  if (typeof value !== "object" || value === null) return false;
-  const { contact, certainty, curve, impact } = value as Kinds;
-  return [contact, certainty, curve].every(isTexts) && Array.isArray(impact) &&
-    impact.every((pair) => Array.isArray(pair) && pair.length === 2 && pair.every(isElement));
 }
 
 function isSetting(value: unknown): value is Setting {
@@ -70,7 +59,6 @@ function sceneText(json: Record<string, unknown>): SceneText {
   need(isNumber(s.time_step), "time_step");
   need(isText(s.seed), "seed");
   need(Array.isArray(s.settings) && s.settings.every(isSetting), "settings");
-  need(isKinds(s.kinds), "kinds");
   need(Array.isArray(s.fields) && s.fields.every(isFieldForm), "fields");
   s.pin_values ??= [];
   need(Array.isArray(s.pin_values) && s.pin_values.every((value) => isText(value?.key) && isText(value.doc) && isText(value.unit)), "pin_values");
@@ -79,7 +67,7 @@ function sceneText(json: Record<string, unknown>): SceneText {
   for (const object of s.objects as unknown[]) {
     need(typeof object === "object" && object !== null, "objects");
     const o = object as SceneObject;
-    need(isText(o.name) && isCount(o.vertices) && isCount(o.triangles), "objects");
+    need(isText(o.name) && isCount(o.vertices) && isCount(o.triangles) && isNumber(o.margin), "objects");
   }
   return s;
 }

@@ -1,6 +1,7 @@
 /** Divides a message into its sections, and checks values of its text. */
+import { COLUMNS, LIST_NAMES, rowsOf, type Lists, type Numbers } from "./lists";
 import { EVENT_KINDS, NONE, type EventData, type FrameSections, type Vector } from "./messages";
-import { FORMS, type Form } from "./sections";
+import { ARRAYS, FORMS, type Form } from "./sections_generated";
 
 export const ALIGNMENT = 16;
 
@@ -24,12 +25,11 @@ export function need(ok: boolean, name: string): void {
   if (!ok) fail(`its text has no valid “${name}”`);
 }
 
-type Data = Uint8Array | Uint32Array | Float32Array | Float64Array;
 
 export class Sections {
-  private readonly found = new Map<string, Map<number, Data>>();
+  private readonly found = new Map<string, Map<number, Numbers>>();
 
-  add(form: Form, object: number, data: Data): void {
+  add(form: Form, object: number, data: Numbers): void {
     let objects = this.found.get(form.name);
     if (!objects) this.found.set(form.name, (objects = new Map()));
     const before = objects.size;
@@ -38,20 +38,26 @@ export class Sections {
   }
 
   ofFrame(): FrameSections {
-    const forms = (Object.values(FORMS) as Form[]).filter(({ kinds }) => kinds[0] === "frame");
+    const forms = (Object.values(FORMS) as Form[]).filter(({ kinds, name }) => kinds[0] === "frame" && name !== "column");
     const members = Object.fromEntries(
-      forms.map(({ name, array, perObject }) => [
-        name.replace(/_(.)/g, (_, letter: string) => letter.toUpperCase()), perObject ? this.each(name) : this.one(name, new array(0)),
+      forms.map(({ name, scalar, is_of_object }) => [
+        name.replace(/_(.)/g, (_, letter: string) => letter.toUpperCase()), is_of_object ? this.each(name) : this.one(name, new ARRAYS[scalar](0)),
       ]),
     );
     return members as unknown as FrameSections;
   }
 
-  one<T extends Data>(name: string, empty: T): T {
+  lists(): Lists {
+    const sent = this.each("column");
+    const rows = LIST_NAMES.map((list) => [list, rowsOf(list, (at) => sent.get(at)) ?? fail(`its columns of ${list} have different lengths`)]);
+    return Object.fromEntries(rows) as Lists;
+  }
+
+  one<T extends Numbers>(name: string, empty: T): T {
     return (this.found.get(name)?.get(NONE) as T | undefined) ?? empty;
   }
 
-  each<T extends Data>(name: string): Map<number, T> {
+  each<T extends Numbers>(name: string): Map<number, T> {
     return (this.found.get(name) ?? new Map()) as Map<number, T>;
   }
 
@@ -90,11 +96,12 @@ export function readSections(buffer: ArrayBuffer, kind: string, count: number, s
     const form = (FORMS as Record<number, Form | undefined>)[tag];
     if (!form) continue;  // a section of a later version
     if (!form.kinds.includes(kind)) fail(`a message of kind ${kind} has a section ${form.name}`);
-    if (form.perObject !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
-    const width = form.width || seriesWidth;
-    const numbers = elements * width;
-    if (numbers * form.array.BYTES_PER_ELEMENT !== bytes) fail(`its section ${form.name} has a wrong length`);
-    sections.add(form, object, new form.array(buffer, start, numbers));
+    if (form.is_of_object !== (object !== NONE)) fail(`its section ${form.name} has a wrong object`);
+    const column = form.name === "column" ? COLUMNS[object] : { ...form, width: form.width || seriesWidth };
+    if (!column) continue;  // a column of a later version
+    const numbers = elements * column.width;
+    if (numbers * ARRAYS[column.scalar].BYTES_PER_ELEMENT !== bytes) fail(`its section ${form.name} has a wrong length`);
+    sections.add(form, object, new ARRAYS[column.scalar](buffer, start, numbers));
   }
   if (at !== buffer.byteLength) fail("it is longer than its sections");
   return sections;

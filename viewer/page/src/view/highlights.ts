@@ -1,7 +1,7 @@
 /** What the user has selected, explained or pulled, drawn over everything else. */
 import * as THREE from "three";
 import { MARKS, OKABE_ITO } from "../colours";
-import { findContact, pointsAt } from "../contacts";
+import { findContact, middleOf, pointsOf, selectableIn } from "../contacts";
 import type { Model } from "../model";
 import { Dots, Lines, type Projection } from "./marks";
 import { Faces } from "./primitives";
@@ -61,12 +61,7 @@ export class Highlights {
     const { contact, frame } = this.model;
     if (!contact || !frame) return null;
     const at = findContact(frame, contact);
-    if (at < 0) return null;
-    const { data, first, count } = pointsAt(frame, at);
-    const mean = [0, 0, 0];
-    for (let k = 0; k < count; ++k)
-      for (let axis = 0; axis < 3; ++axis) mean[axis]! += data[8 * (first + k) + axis]! / count;
-    return count > 0 ? mean : null;
+    return at < 0 ? null : middleOf(pointsOf(frame, this.model.objects, selectableIn(frame), at));
   }
 
   private fillExplanation(): void {

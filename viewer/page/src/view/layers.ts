@@ -1,12 +1,15 @@
 /** Layers over the surfaces, filled from the newest frame while switched on. */
 import * as THREE from "three";
 import { GAPS, gapLevel, MARKS } from "../colours";
+import { selectableIn, shareOfMargins } from "../contacts";
 import { dotColours, fillArrows, fillDots } from "../fields/marks";
 import { boundsOf } from "../bounds";
 import type { Model, ObjectState } from "../model";
-import type { FrameMessage } from "../protocol/messages";
+import type { Lists, Rows } from "../protocol/lists";
+import { eachElement, eachPlace, numberAt, objectAt, rowsIn, SIDES, vectorAt } from "../records";
 import { Dots, Lines, type Projection } from "./marks";
 import { Cells, Faces } from "./primitives";
+import { drawnAs, styleOf, type Style } from "./styles";
 
 /** In CSS pixels; closer marks are thinned out. */
 const SPACING = 13;
@@ -40,15 +43,15 @@ function writeCentre(into: Float32Array, at: number, object: ObjectState): boole
   return true;
 }
 
-/** The triangles at the vertices that curves enclose: an object and a triangle each. */
-function enclosedFaces({ curves, enclosedVertices }: FrameMessage, at: number[], objects: ObjectState[]): number[] {
+/** The triangles at the vertices that the curves at some places enclose: an object and a triangle each. */
+function enclosedFaces({ curves, enclosed_vertices }: Lists, at: number[], objects: ObjectState[]): number[] {
   const enclosed = new Map<number, Uint8Array>();  // 1 for each enclosed vertex
-  for (const i of at) {
-    let from = curves[i + 4]!;
-    for (const side of [0, 1]) {
-      const object = curves[i + side]!;
+  for (const place of at) {
+    let from = numberAt(curves, "first_enclosed", place)!;
+    for (const side of SIDES) {
+      const object = objectAt(curves, side, place);
       if (!enclosed.has(object)) enclosed.set(object, new Uint8Array(objects[object]!.vertices));
-      for (const vertex of enclosedVertices.subarray(from, (from += curves[i + 5 + side]!))) enclosed.get(object)![vertex] = 1;
+      for (const vertex of enclosed_vertices.columns["vertex"]!.subarray(from, (from += numberAt(curves, `enclosed_count_${side}`, place)!))) enclosed.get(object)![vertex] = 1;
     }
   }
   const faces: number[] = [];
@@ -62,11 +65,8 @@ function enclosedFaces({ curves, enclosedVertices }: FrameMessage, at: number[],
 
 const ARROW_LINES = 5;
 
-/** Writes a shaft and the four edges of its head. A row has the start, the length and the unit direction. */
-function writeArrow(into: Float32Array, at: number, row: Float32Array): void {
-  const start = new THREE.Vector3().fromArray(row);
-  const length = row[3]!;
-  const along = new THREE.Vector3().fromArray(row, 4);
+/** Writes a shaft and the four edges of its head. */
+function writeArrow(into: Float32Array, at: number, start: THREE.Vector3, length: number, along: THREE.Vector3): void {
   const tip = start.clone().addScaledVector(along, length);
   const away = Math.abs(along.x) < 0.6 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0);
   const across = away.cross(along).setLength(0.1 * length);
@@ -102,32 +102,32 @@ class Marks {
   }
 }
 
-const areShown = (model: Model, a: number, b: number): boolean => Boolean(model.objects[a]?.visible && model.objects[b]?.visible);
+/** The rows of a list whose objects are both visible. */
+function shownIn(model: Model, rows: Rows): number[] {
+  const shown: number[] = [];
+  for (let place = 0; place < rows.count; ++place)
+    if (SIDES.every((side) => model.objects[objectAt(rows, side, place)]?.visible)) shown.push(place);
+  return shown;
+}
 
-/** Calls `visit` with the offset of each point of contacts or impacts whose objects are both visible. */
-export function eachContactPoint(model: Model, visit: (data: Float32Array, at: number) => void): void {
-  const { frame } = model;
-  if (!frame) return;
-  const { contacts, impacts } = frame;
-  for (let i = 0; i < contacts.length; i += 8) {
-    if (!areShown(model, contacts[i]!, contacts[i + 2]!)) continue;
-    const first = contacts[i + 6]!;
-    for (let k = 0; k < contacts[i + 5]!; ++k) visit(frame.contactPoints, 8 * (first + k));
+/** Calls `visit` with each contact point whose objects are both visible: its array and offset, and its row. */
+export function eachContactPoint(model: Model, visit: (data: ArrayLike<number>, at: number, rows: Rows, place: number) => void): void {
+  const { frame, objects } = model;
+  for (const list of frame ? drawnAs("contact") : []) {
+    const rows: Rows = frame!.lists[list];
+    for (const place of shownIn(model, rows)) eachPlace(rows, place, frame!.lists, objects, (data, at) => visit(data, at, rows, place));
   }
-  for (let i = 0; i < impacts.length; i += 8) if (areShown(model, impacts[i]!, impacts[i + 3]!)) visit(frame.impactPoints, i);
 }
 
 /** The same for each segment of a contact, with the offsets of both ends. */
-export function eachContactSegment(model: Model, visit: (data: Float32Array, from: number, to: number) => void): void {
-  const { frame } = model;
-  if (!frame) return;
-  const { contacts, contactPoints } = frame;
-  for (let i = 0; i < contacts.length; i += 8) {
-    const count = contacts[i + 5]!;
-    if (count < 2 || !areShown(model, contacts[i]!, contacts[i + 2]!)) continue;
-    const first = contacts[i + 6]!;
-    const lines = count === 2 ? 1 : count;  // a polygon is closed
-    for (let k = 0; k < lines; ++k) visit(contactPoints, 8 * (first + k), 8 * (first + ((k + 1) % count)));
+export function eachContactSegment(model: Model, visit: (data: ArrayLike<number>, from: number, to: number) => void): void {
+  const lists = model.frame?.lists;
+  if (!lists) return;
+  for (const place of shownIn(model, lists.contacts)) {
+    const { first, end } = rowsIn(lists.contacts, place, "contact_points", lists);
+    const count = end - first;
+    const lines = count === 2 ? 1 : count > 2 ? count : 0;  // a polygon is closed
+    for (let k = 0; k < lines; ++k) visit(lists.contact_points.columns["position"]!, 3 * (first + k), 3 * (first + ((k + 1) % count)));
   }
 }
 
@@ -148,7 +148,7 @@ export class Layers {
   readonly normals = new Lines({ colour: MARKS.normal, size: 2, spacing: SPACING, order: 5 });
   readonly segments = new Lines({ colour: MARKS.contact, size: 2.5, order: 5 });
   readonly gapLines = new Lines({ colour: "", colours: GAPS, size: 2, spacing: SPACING, order: 4 });
-  readonly proximity = new Dots({ colour: "", colours: GAPS, ring: true, spacing: SPACING, order: 6 });
+  readonly gaps = new Dots({ colour: "", colours: GAPS, ring: true, spacing: SPACING, order: 6 });
   readonly depths = new Lines({ colour: MARKS.depth, size: 2.5, spacing: SPACING, order: 5 });
   readonly depthPoints = new Dots({ colour: MARKS.depth, spacing: SPACING, order: 6 });
   readonly curveFaces = new Faces({ colour: MARKS.curve, opacity: 0.4, order: 1 });
@@ -170,13 +170,14 @@ export class Layers {
   }
 
   private get sized() {
-    const { pairs, candidates, points, normals, segments, gapLines, proximity, depths, depthPoints, curveArrows, curves, vertices, fieldArrows, fieldDots } = this;
-    return { pairs, candidates, points, normals, segments, gapLines, proximity, depths, depthPoints, curveArrows, curves, vertices, fieldArrows, fieldDots };
+    const { pairs, candidates, points, normals, segments, gapLines, gaps, depths, depthPoints, curveArrows, curves, vertices, fieldArrows, fieldDots } = this;
+    return { pairs, candidates, points, normals, segments, gapLines, gaps, depths, depthPoints, curveArrows, curves, vertices, fieldArrows, fieldDots };
   }
 
   /** The number of elements of each layer, also of those that are thinned out. */
   counts(): Record<string, number> {
-    return Object.fromEntries(Object.entries({ ...this.primitives, ...this.sized }).map(([name, { count }]) => [name, count]));
+    const layers = drawnAs("gaps").map((list) => [styleOf(list).layer, this.gaps] as const);
+    return Object.fromEntries([...Object.entries({ ...this.primitives, ...this.sized }), ...layers].map(([name, { count }]) => [name, count]));
   }
 
   /** Call before each drawing. */
@@ -190,18 +191,18 @@ export class Layers {
     for (const cells of [this.nodeBoxes, this.nodeBalls, this.nodeEdges, this.curveFaces]) cells.depthTest = !throughSurfaces;
     for (const marks of Object.values(this.sized)) marks.through = throughSurfaces;
     this.points.size = this.depthPoints.size = pointSize + 2;
-    this.proximity.size = this.curves.size = pointSize + 4;
+    this.gaps.size = this.curves.size = pointSize + 4;
     this.vertices.size = pointSize;
     this.normals.span = this.model.normalLength;
     this.fillCells();
     this.fillPairs(layers.pairs);
     this.fillCandidates(layers.candidates);
     this.fillTriangles(layers.triangles);
-    this.fillPoints(layers.points);
-    this.fillNormals(layers.normals);
+    this.fillPoints(this.points, layers.points);
+    this.fillPoints(this.normals, layers.normals);
     this.fillSegments(layers.segments);
-    this.fillProximity(layers.proximity);
-    this.fillDepths(layers.depths);
+    this.fillGaps();
+    this.fillDepths();
     this.fillCurves(layers.curves);
     this.fillVertices(layers.vertices);
     fillArrows(this.fieldArrows, this.model);
@@ -226,14 +227,13 @@ export class Layers {
   }
 
   private fillPairs(on: boolean): void {
-    const pairs = this.model.frame?.objectPairs;
-    if (!on || !pairs) return this.pairs.fill(0, () => 0);
-    this.pairs.fill(pairs.length / 2, (into) => {
+    const { frame, objects } = this.model;
+    const pairs = on && frame ? shownIn(this.model, frame.lists.object_pairs) : [];
+    this.pairs.fill(pairs.length, (into) => {
       let at = 0;
-      for (let i = 0; i < pairs.length; i += 2) {
-        const a = this.model.objects[pairs[i]!]!;
-        const b = this.model.objects[pairs[i + 1]!]!;
-        if (a.visible && b.visible && writeCentre(into, at, a) && writeCentre(into, at + 3, b)) at += 6;
+      for (const place of pairs) {
+        const [a, b] = SIDES.map((side) => objects[objectAt(frame!.lists.object_pairs, side, place)]!);
+        if (writeCentre(into, at, a!) && writeCentre(into, at + 3, b!)) at += 6;
       }
       return at / 6;
     });
@@ -252,65 +252,47 @@ export class Layers {
       }
       return at / 6;
     });
-    this.fillFaces(this.candidateFaces, pairs ?? new Uint32Array(0), 4, [0, 2], () => true);
+    this.fillFaces(this.candidateFaces, 2 * count, (visit) => {
+      for (let i = 0; i < 4 * count; i += 2) visit(pairs![i]!, pairs![i + 1]!);
+    });
   }
 
-  /** Fills the triangles named at two offsets of every `stride` numbers, each once. */
-  private fillFaces(
-    faces: Faces, data: Uint32Array, stride: number, places: [number, number], isFace: (i: number, side: number) => boolean,
-  ): void {
+  /** Fills triangles, at most this many, each once. */
+  private fillFaces(faces: Faces, most: number, each: (visit: (object: number, triangle: number) => void) => void): void {
     this.marks.begin();
-    faces.fill((2 * data.length) / stride, (into) => {
+    faces.fill(most, (into) => {
       let at = 0;
-      for (let i = 0; i < data.length; i += stride)
-        places.forEach((place, side) => {
-          const object = data[i + place]!;
-          const triangle = data[i + place + 1]!;
-          if (this.shown(object) && isFace(i, side) && this.marks.mark(object, triangle))
-            at = writeTriangle(into, at, this.model.objects[object]!, triangle);
-        });
+      each((object, triangle) => {
+        if (this.shown(object) && this.marks.mark(object, triangle)) at = writeTriangle(into, at, this.model.objects[object]!, triangle);
+      });
       return at / 9;
     });
   }
 
   private fillTriangles(on: boolean): void {
-    const { frame, scene } = this.model;
-    const none = new Uint32Array(0);
-    if (frame && frame.impacts.length > 0)
-      this.fillFaces(this.triangles, on ? frame.impacts : none, 8, [0, 3], (i, side) => scene!.kinds.impact[frame.impacts[i + 6]!]![side] === "face");
-    else this.fillFaces(this.triangles, on && frame ? frame.contacts : none, 8, [0, 2], () => true);
-  }
-
-  private pointCount(): number {
     const { frame } = this.model;
-    return frame ? (frame.contactPoints.length + frame.impactPoints.length) / 8 : 0;
-  }
-
-  private fillPoints(on: boolean): void {
-    this.points.fill(on ? this.pointCount() : 0, (into) => {
-      let at = 0;
-      eachContactPoint(this.model, (data, from) => {
-        into[at++] = data[from]!;
-        into[at++] = data[from + 1]!;
-        into[at++] = data[from + 2]!;
-      });
-      return at / 3;
+    const rows = on && frame ? selectableIn(frame) : null;
+    this.fillFaces(this.triangles, 2 * (rows?.count ?? 0), (visit) => {
+      for (const side of SIDES) eachElement(rows!, side, (object, kind, face) => kind === "face" && visit(object, face));
     });
   }
 
-  private fillNormals(on: boolean): void {
-    this.normals.fill(on ? this.pointCount() : 0, (into) => {
+  /** A mark at each contact point; that of a line has the normal, too. */
+  private fillPoints(marks: Dots | Lines, on: boolean): void {
+    let count = 0;
+    if (on) eachContactPoint(this.model, () => (count += 1));
+    marks.fill(count, (into) => {
       let at = 0;
-      eachContactPoint(this.model, (data, from) => {
+      eachContactPoint(this.model, (data, from, { columns }, place) => {
         for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + axis]!;
-        for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + 4 + axis]!;
+        if (marks instanceof Lines) for (let axis = 0; axis < 3; ++axis) into[at++] = columns["normal"]?.[3 * place + axis] ?? 0;
       });
-      return at / 6;
+      return count;
     });
   }
 
   private fillSegments(on: boolean): void {
-    this.segments.fill(on && this.model.frame ? this.model.frame.contactPoints.length / 8 : 0, (into) => {
+    this.segments.fill(on && this.model.frame ? this.model.frame.lists.contact_points.count : 0, (into) => {
       let at = 0;
       eachContactSegment(this.model, (data, from, to) => {
         for (const end of [from, to]) for (let axis = 0; axis < 3; ++axis) into[at++] = data[end + axis]!;
@@ -319,72 +301,76 @@ export class Layers {
     });
   }
 
-  /** A ring in the middle of each gap, and a line as long as the gap, coloured by the share of the margins. */
-  private fillProximity(on: boolean): void {
-    const { frame } = this.model;
-    const pairs = on && frame ? frame.proximityPairs : new Uint32Array(0);
-    const shown: number[] = [];
-    for (let i = 0; i < pairs.length / 2; ++i) if (this.shown(pairs[2 * i]!) && this.shown(pairs[2 * i + 1]!)) shown.push(8 * i);
-    const data = frame?.proximityPoints ?? new Float32Array(0);
-    this.proximity.fill(shown.length, (into) => {
-      shown.forEach((from, k) => {
-        for (let axis = 0; axis < 3; ++axis) into[4 * k + axis] = (data[from + axis]! + data[from + 4 + axis]!) / 2;
-        into[4 * k + 3] = gapLevel(data[from + 7]!);
-      });
-      return shown.length;
+  /** The rows of lists that are drawn like this, in visible layers and of visible objects. */
+  private drawn(draws: Style["draws"]): { rows: Rows; place: number }[] {
+    const { frame, layers } = this.model;
+    const lists = frame ? drawnAs(draws).filter((list) => layers[styleOf(list).layer]) : [];
+    return lists.map((list): Rows => frame!.lists[list]).flatMap((rows) => shownIn(this.model, rows).map((place) => ({ rows, place })));
+  }
+
+  /** Writes the points of a row, and returns the offset after them. */
+  private writePoints(into: Float32Array, at: number, { rows, place }: { rows: Rows; place: number }): number {
+    eachPlace(rows, place, this.model.frame!.lists, this.model.objects, (data, from) => {
+      for (let axis = 0; axis < 3; ++axis) into[at++] = data[from + axis]!;
     });
-    this.gapLines.fill(shown.length, (into) => {
-      shown.forEach((from, k) => {
-        for (let axis = 0; axis < 3; ++axis) {
-          into[7 * k + axis] = data[from + axis]!;
-          into[7 * k + 3 + axis] = data[from + 4 + axis]!;
-        }
-        into[7 * k + 6] = gapLevel(data[from + 7]!);
+    return at;
+  }
+
+  /** A ring in the middle of each gap, and a line as long as the gap, coloured by the share of the margins. */
+  private fillGaps(): void {
+    const gaps = this.drawn("gaps");
+    const levels = gaps.map(({ rows, place }) => gapLevel(shareOfMargins(this.model.scene!, rows, place)));
+    this.gapLines.fill(gaps.length, (into) => {
+      gaps.forEach((gap, k) => (into[this.writePoints(into, 7 * k, gap)] = levels[k]!));
+      return gaps.length;
+    });
+    const ends = new Float32Array(6);
+    this.gaps.fill(gaps.length, (into) => {
+      gaps.forEach((gap, k) => {
+        this.writePoints(ends, 0, gap);
+        for (let axis = 0; axis < 3; ++axis) into[4 * k + axis] = (ends[axis]! + ends[3 + axis]!) / 2;
+        into[4 * k + 3] = levels[k]!;
       });
-      return shown.length;
+      return gaps.length;
     });
   }
 
   /** Lines from the vertices inside solid objects to the closest points of their surfaces. */
-  private fillDepths(on: boolean): void {
-    const { frame } = this.model;
-    const count = on && frame ? frame.penetrations.length / 4 : 0;
-    this.depths.fill(count, (into) => {
-      let at = 0;
-      for (let i = 0; i < count; ++i) {
-        if (!this.shown(frame!.penetrations[4 * i]!) || !this.shown(frame!.penetrations[4 * i + 2]!)) continue;
-        for (const end of [0, 4]) for (let axis = 0; axis < 3; ++axis) into[at++] = frame!.penetrationPoints[8 * i + end + axis]!;
-      }
-      return at / 6;
+  private fillDepths(): void {
+    const depths = this.drawn("depths");
+    this.depths.fill(depths.length, (into) => {
+      depths.forEach((depth, k) => this.writePoints(into, 6 * k, depth));
+      return depths.length;
     });
-    this.depthPoints.fill(count, (into) => {
-      let at = 0;
-      for (let i = 0; i < count; ++i) {
-        if (!this.shown(frame!.penetrations[4 * i]!) || !this.shown(frame!.penetrations[4 * i + 2]!)) continue;
-        for (let axis = 0; axis < 3; ++axis) into[at++] = frame!.penetrationPoints[8 * i + axis]!;
-      }
-      return at / 3;
+    const ends = new Float32Array(6);
+    this.depthPoints.fill(depths.length, (into) => {
+      depths.forEach((depth, k) => {
+        this.writePoints(ends, 0, depth);
+        into.set(ends.subarray(0, 3), 3 * k);
+      });
+      return depths.length;
     });
   }
 
   /** The triangles at the vertices that each curve encloses, and an arrow along its normal, as long as its depth. */
   private fillCurves(on: boolean): void {
     const { frame, objects } = this.model;
-    const shown: number[] = [];
-    for (let i = 0; on && frame && i < frame.curves.length; i += 8)
-      if (this.shown(frame.curves[i]!) && this.shown(frame.curves[i + 1]!)) shown.push(i);
-    const faces = frame ? enclosedFaces(frame, shown, objects) : [];
+    const shown = on && frame ? shownIn(this.model, frame.lists.curves) : [];
+    const faces = frame ? enclosedFaces(frame.lists, shown, objects) : [];
     this.curveFaces.fill(faces.length / 2, (into) => {
       let at = 0;
       for (let i = 0; i < faces.length; i += 2) at = writeTriangle(into, at, objects[faces[i]!]!, faces[i + 1]!);
       return at / 9;
     });
     this.curves.fill(shown.length, (into) => {
-      shown.forEach((i, k) => into.set(frame!.curvePoints.subarray(i, i + 3), 3 * k));
+      shown.forEach((place, k) => into.set(vectorAt(frame!.lists.curves, "centroid", place), 3 * k));
       return shown.length;
     });
     this.curveArrows.fill(ARROW_LINES * shown.length, (into) => {
-      shown.forEach((i, k) => writeArrow(into, 6 * ARROW_LINES * k, frame!.curvePoints.subarray(i, i + 8)));
+      shown.forEach((place, k) => {
+        const [start, along] = ["centroid", "normal"].map((name) => new THREE.Vector3().fromArray(vectorAt(frame!.lists.curves, name, place)));
+        writeArrow(into, 6 * ARROW_LINES * k, start!, numberAt(frame!.lists.curves, "depth", place)!, along!);
+      });
       return ARROW_LINES * shown.length;
     });
   }

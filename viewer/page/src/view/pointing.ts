@@ -1,16 +1,18 @@
 /** What is below a point of the window, in the pane that is there; and where a point of the scene is in the window. */
 import * as THREE from "three";
-import { contactCount, hasImpacts, pointsAt } from "../contacts";
+import { hasImpacts, selectableIn } from "../contacts";
 import { readField } from "../fields/fields";
-import type { Layer, Model } from "../model";
-import type { FrameMessage } from "../protocol/messages";
+import type { Model } from "../model";
+import type { ListName } from "../protocol/lists";
+import { eachPlace } from "../records";
 import type { Pane, Panes } from "./panes";
 import { pick, type Hit } from "./picking";
 import type { Slice } from "./slice";
+import { DRAWN, styleOf } from "./styles";
 
 /** A mark of the newest frame: a row of one of its lists. */
 export interface MarkHit {
-  kind: "contacts" | "impacts" | "proximity" | "penetrations" | "curves";
+  list: ListName;
   place: number;
 }
 
@@ -59,38 +61,19 @@ export class Pointing {
 
   /** The index of the contact whose point is closest to the cursor; −1 when none is near. */
   contactAt(x: number, y: number): number {
-    return this.nearest(x, y, this.contactPoints())?.place ?? -1;
+    const { frame } = this.model;
+    return (frame && this.nearest(x, y, [selectableIn(frame).list])?.place) ?? -1;
   }
 
   /** The mark of a visible layer, or with a value of the shown field, that is closest to the cursor, or null. */
   markAt(x: number, y: number): MarkHit | null {
-    return this.nearest(x, y, [...this.contactPoints(), ...this.otherPoints()]);
+    const { frame } = this.model;
+    return frame && this.nearest(x, y, DRAWN.filter((list) => list !== "contacts" || !hasImpacts(frame)));
   }
 
-  private contactPoints(): PointList[] {
-    const { frame, layers } = this.model;
-    if (!frame || !(layers.points || this.hasField("impact_points"))) return [];
-    return hasImpacts(frame) ? [{ kind: "impacts", data: frame.impactPoints, offset: 0 }] : [{ kind: "contacts", data: frame.contactPoints, offset: 0 }];
-  }
-
-  /** Whether the shown field has its values in a section. */
-  private hasField(section: string): boolean {
-    return readField(this.model)?.form.section === section;
-  }
-
-  private otherPoints(): PointList[] {
-    const { frame, layers } = this.model;
-    if (!frame) return [];
-    const lists: (PointList & { layer: Layer; section: string })[] = [
-      { layer: "proximity", section: "proximity_points", kind: "proximity", data: frame.proximityPoints, offset: 0 },
-      { layer: "proximity", section: "proximity_points", kind: "proximity", data: frame.proximityPoints, offset: 4 },
-      { layer: "depths", section: "penetration_points", kind: "penetrations", data: frame.penetrationPoints, offset: 0 },
-      { layer: "curves", section: "curve_points", kind: "curves", data: frame.curvePoints, offset: 0 },
-    ];
-    return lists.filter(({ layer, section }) => layers[layer] || this.hasField(section));
-  }
-
-  private nearest(x: number, y: number, lists: PointList[]): MarkHit | null {
+  private nearest(x: number, y: number, lists: ListName[]): MarkHit | null {
+    const { frame, layers, objects } = this.model;
+    const field = readField(this.model)?.form.list;
     const pane = this.panes.at(x, y);
     const box = this.boxOf(pane);
     pane.rig.camera.updateMatrixWorld();
@@ -99,31 +82,16 @@ export class Pointing {
     const keeps = this.model.inView(pane.index, () => this.slice.keeps);
     let best = REACH;
     let found: MarkHit | null = null;
-    for (const { kind, data, offset } of lists)
-      for (let from = offset; from < data.length; from += 8) {
-        at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
-        if (at.z < -1 || at.z > 1 || !keeps(data[from]!, data[from + 1]!, data[from + 2]!)) continue;
-        const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
-        if (away >= best) continue;
-        best = away;
-        found = { kind, place: Math.floor(from / 8) };
-      }
-    return found?.kind === "contacts" ? { kind: "contacts", place: contactWithPoint(this.model.frame!, found.place) } : found;
+    for (const list of lists.filter((list) => layers[styleOf(list).layer] || list === field))
+      for (let place = 0; place < frame!.lists[list].count; ++place)
+        eachPlace(frame!.lists[list], place, frame!.lists, objects, (data, from) => {
+          at.set(data[from]!, data[from + 1]!, data[from + 2]!).applyMatrix4(matrix);
+          if (at.z < -1 || at.z > 1 || !keeps(data[from]!, data[from + 1]!, data[from + 2]!)) return;
+          const away = Math.hypot(box.left + ((at.x + 1) / 2) * box.width - x, box.top + ((1 - at.y) / 2) * box.height - y);
+          if (away >= best) return;
+          best = away;
+          found = { list, place };
+        });
+    return found;
   }
-}
-
-/** The contact that has a point. */
-function contactWithPoint(frame: FrameMessage, point: number): number {
-  for (let place = 0; place < contactCount(frame); ++place) {
-    const { first, count } = pointsAt(frame, place);
-    if (point >= first && point < first + count) return place;
-  }
-  throw new Error("a point belongs to no contact");
-}
-
-/** Rows of eight numbers with a point at an offset. */
-interface PointList {
-  kind: MarkHit["kind"];
-  data: Float32Array;
-  offset: number;
 }

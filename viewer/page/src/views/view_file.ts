@@ -1,5 +1,5 @@
 /** Reads view files, and links that contain a view. Errors are sentences for the user. */
-import { VIEW_MEMBERS, type ViewMember } from "../protocol/view_members";
+import members from "../protocol/view_members_generated.json";
 import type { ViewState } from "../view_state";
 
 const LARGEST_FILE = 16_000_000;
@@ -8,8 +8,21 @@ type Json = Record<string, unknown>;
 const isObject = (value: unknown): value is Json => typeof value === "object" && value !== null && !Array.isArray(value);
 const isId = (value: unknown): boolean => Number.isInteger(value) && (value as number) >= 0;
 
+/** A member of view files, as viewer/view_file/view_members.hpp describes it. */
+interface ViewMember {
+  kind: "number" | "whole" | "truth" | "word" | "colour" | "text" | "key" | "point" | "interval" | "objects";
+  /** What a value must be, in words. */
+  range: string;
+  /** Of numbers, null without a limit; `above` excludes the lowest number. */
+  low: number | null;
+  high: number | null;
+  above: boolean;
+  words: string[];
+}
+const MEMBERS = Object.entries(members).map(([path, member]) => ({ names: path.split("."), member: member as ViewMember }));
+
 function isValid(value: unknown, { kind, low, high, above, words }: ViewMember): boolean {
-  const isInRange = () => Number.isFinite(value) && (value as number) >= low && (value as number) <= high && !(above && value === low);
+  const isInRange = () => Number.isFinite(value) && (value as number) >= (low ?? -Infinity) && (value as number) <= (high ?? Infinity) && !(above && value === low);
   switch (kind) {
     case "number": return isInRange();
     case "whole": return Number.isInteger(value) && isInRange();
@@ -47,7 +60,7 @@ export function parseView(text: string): Partial<ViewState> {
   } catch (error) {
     throw new Error(`This is no view file: it is not JSON (${(error as Error).message}).`);
   }
-  const fault = faultOf(value, VIEW_MEMBERS.map((member) => ({ names: member.path.split("."), member })), 0, "");
+  const fault = faultOf(value, MEMBERS, 0, "");
   if (fault) throw new Error(`The view cannot be used: ${fault}. Nothing is changed.`);
   if (!("version" in (value as Json))) throw new Error("The view cannot be used: version is missing. Nothing is changed.");
   return value as Partial<ViewState>;

@@ -1,8 +1,11 @@
 /** What touches what: a table of pairs of objects, each of which opens to its single contacts. */
-import { findContact, hasImpacts, isHit, isTouching, keyAt, kindAt, pairsOf, pointOf, sidesOf, type Run, type TouchingPair } from "../../contacts";
+import { findContact, isHit, isTouching, middleOf, pairsOf, pointsOf, selectableIn, type TouchingPair } from "../../contacts";
 import type { Column } from "../../filter";
 import type { Model } from "../../model";
 import type { Pins } from "../../pins";
+import type { ListName, Rows } from "../../protocol/lists";
+import { hasColumn, keyAt, kindAt, numberAt, sidesAt } from "../../records";
+import { styleOf } from "../../view/styles";
 import { h, readable } from "../dom";
 import { makeRow, RowWindow, type Row } from "./row_window";
 import { TableControls } from "./table_controls";
@@ -10,8 +13,11 @@ import { TableControls } from "./table_controls";
 const ROW_HEIGHT = 1.5;  // in rem
 const rounded = (value: number): string => String(Number(value.toPrecision(3)));
 
+/** The number of a row by which contacts are compared, with the word before it. */
+const MEASURES = [["distance", "gap"], ["depth", "depth"], ["toi", "at"]] as const;
+
 interface Single {
-  kind: Run["kind"];
+  list: ListName;
   place: number;
 }
 
@@ -116,20 +122,15 @@ export class ContactTable {
   }
 
   /** What touches in a single contact: an element of each side, the kind, and a number. */
-  private textsOf({ kind, place }: Single): string[] {
-    const frame = this.model.frame!;
-    const { kinds } = this.model.scene!;
-    if (kind === "proximity") return ["", "", "near", `gap ${rounded(frame.proximityPoints[8 * place + 3]!)}`];
-    if (kind === "penetrations") {
-      const [, vertex, , triangle] = frame.penetrations.subarray(4 * place, 4 * place + 4);
-      return [`vertex ${vertex}`, `face ${triangle}`, "inside", `depth ${rounded(frame.penetrationPoints[8 * place + 3]!)}`];
-    }
-    if (kind === "contacts" && hasImpacts(frame)) {
-      const [, one, , other, word] = frame.contacts.subarray(8 * place, 8 * place + 5);
-      return [`face ${one}`, `face ${other}`, kinds.contact[word!]!, ""];
-    }
-    const [a, b] = sidesOf(keyAt(frame, place), kinds).map(({ elements, isFace }) => `${isFace ? "face" : elements.length > 1 ? "edge" : "vertex"} ${elements.join("–")}`);
-    return [a!, b!, kindAt(frame, place, kinds), kind === "impacts" ? `at ${rounded(frame.impactPoints[8 * place + 3]!)}` : ""];
+  private textsOf({ list, place }: Single): string[] {
+    const rows: Rows = this.model.frame!.lists[list];
+    const { words, hidesElements } = styleOf(list);
+    const sides = (!hidesElements && sidesAt(rows, place)) || null;
+    const measure = MEASURES.find(([column]) => hasColumn(list, column));
+    return [
+      ...(sides?.map(({ kind, elements }) => `${kind} ${elements.join("–")}`) ?? ["", ""]),
+      words?.[0] ?? kindAt(rows, place), measure ? `${measure[1]} ${rounded(numberAt(rows, measure[0], place)!)}` : "",
+    ];
   }
 
   /** A click on a pair shows it and opens it, or closes it again. */
@@ -148,11 +149,11 @@ export class ContactTable {
     this.chosen = { pair: keyOf(pair), single };
     this.window.reveal(index);
     const from = single < 0 ? null : singleOf(pair, single);
-    const isListed = from !== null && from.kind === (hasImpacts(frame) ? "impacts" : "contacts");
-    if (isListed) this.model.selectContact(keyAt(frame, from.place));
+    if (from?.list === selectableIn(frame).list) this.model.selectContact(keyAt(selectableIn(frame), from.place));
     else this.model.select({ object: pair.a, triangle: null, vertex: null });
-    const points = from ? [pointOf(frame, from.kind, from.place)] : pair.runs.flatMap(({ kind, first, count }) => Array.from({ length: count }, (_, i) => pointOf(frame, kind, first + i)));
-    this.showPoints(points.filter((point) => point !== null));
+    const singles = from ? [from] : pair.runs.flatMap(({ list, first, count }) => Array.from({ length: count }, (_, i) => ({ list, place: first + i })));
+    const middles = singles.map(({ list, place }) => middleOf(pointsOf(frame, this.model.objects, frame.lists[list], place)));
+    this.showPoints(middles.filter((point) => point !== null));
     this.pinButton.disabled = false;
     this.window.draw();
   }
@@ -205,7 +206,7 @@ export class ContactTable {
     if (chosen.single < 0 || !this.open.has(chosen.pair)) return this.starts[at]!;
     const pair = this.listed[at]!;
     const place = contact ? findContact(frame, contact) : -1;  // contacts keep their elements from step to step, not their place
-    const single = place >= 0 ? numberOf(pair, hasImpacts(frame) ? "impacts" : "contacts", place) : chosen.single;
+    const single = place >= 0 ? numberOf(pair, selectableIn(frame).list, place) : chosen.single;
     return single < pair.count ? this.starts[at]! + 1 + single : this.starts[at]!;
   }
 }
@@ -235,18 +236,18 @@ function measureOf(pair: TouchingPair): string {
 
 function singleOf(pair: TouchingPair, number: number): Single {
   let left = number;
-  for (const { kind, first, count } of pair.runs) {
-    if (left < count) return { kind, place: first + left };
+  for (const { list, first, count } of pair.runs) {
+    if (left < count) return { list, place: first + left };
     left -= count;
   }
   throw new Error("a pair has fewer contacts");
 }
 
 /** The number of a single contact in its pair; −1 when it is in another one. */
-function numberOf(pair: TouchingPair, kind: Run["kind"], place: number): number {
+function numberOf(pair: TouchingPair, list: ListName, place: number): number {
   let before = 0;
   for (const run of pair.runs) {
-    if (run.kind === kind && place >= run.first && place < run.first + run.count) return before + place - run.first;
+    if (run.list === list && place >= run.first && place < run.first + run.count) return before + place - run.first;
     before += run.count;
   }
   return -1;

@@ -1,6 +1,8 @@
 /** A table of the curves of the frame and what they enclose. */
 import type { Column } from "../../filter";
 import type { Model } from "../../model";
+import type { Rows } from "../../protocol/lists";
+import { kindAt, numberAt, objectAt, SIDES, vectorAt, type Side } from "../../records";
 import { h, readable } from "../dom";
 import { makeRow, RowWindow, type Row } from "./row_window";
 import { TableControls } from "./table_controls";
@@ -34,21 +36,30 @@ export class CurveTable {
   }
 
   private columns(): Column<number>[] {
-    const ids = (curve: number, at: number) => this.model.frame!.curves[8 * curve + at]!;
-    const points = (curve: number, at: number) => this.model.frame!.curvePoints[8 * curve + at]!;
-    const name = (curve: number, side: number) => this.model.objects[ids(curve, side)]!.name;
     return [
-      { key: "a", label: "object a", value: (curve) => name(curve, 0) },
-      { key: "b", label: "object b", value: (curve) => name(curve, 1) },
-      { key: "area", label: "area", title: "Area of a closed curve, or the kind of the curve", value: (curve) => (this.kindOf(curve) === "closed" ? points(curve, 7) : null) },
-      { key: "depth", label: "depth", title: "How far a must move along the normal", value: (curve) => points(curve, 3) },
-      { key: "enclosed", label: "enclosed", title: "Vertices of a and of b that the curve encloses", value: (curve) => ids(curve, 5) + ids(curve, 6) },
+      { key: "a", label: "object a", value: (curve) => this.nameOf(curve, "a") },
+      { key: "b", label: "object b", value: (curve) => this.nameOf(curve, "b") },
+      { key: "area", label: "area", title: "Area of a closed curve, or the kind of the curve", value: (curve) => (this.kindOf(curve) === "closed" ? this.areaOf(curve) : null) },
+      { key: "depth", label: "depth", title: "How far a must move along the normal", value: (curve) => numberAt(this.curves, "depth", curve)! },
+      { key: "enclosed", label: "enclosed", title: "Vertices of a and of b that the curve encloses", value: (curve) => numberAt(this.curves, "enclosed_count_a", curve)! + numberAt(this.curves, "enclosed_count_b", curve)! },
       { key: "kind", value: (curve) => this.kindOf(curve) },
     ];
   }
 
+  private get curves(): Rows {
+    return this.model.frame!.lists.curves;
+  }
+
+  private nameOf(curve: number, side: Side): string {
+    return this.model.objects[objectAt(this.curves, side, curve)]!.name;
+  }
+
   private kindOf(curve: number): string {
-    return this.model.scene!.kinds.curve[this.model.frame!.curves[8 * curve + 2]!]!;
+    return kindAt(this.curves, curve);
+  }
+
+  private areaOf(curve: number): number {
+    return Math.hypot(...vectorAt(this.curves, "area", curve));
   }
 
   private update(): void {
@@ -57,7 +68,7 @@ export class CurveTable {
     if (state !== this.state) this.chosen = -1;
     this.state = state;
     const { scene, frame } = this.model;
-    const count = (frame?.curves.length ?? 0) / 8;
+    const count = frame?.lists.curves.count ?? 0;
     this.listed = this.controls.apply(Array.from({ length: count }, (_, i) => i));
     const finds = scene?.contacts.includes("penetration") ?? false;
     const curves = `${readable(count)} ${count === 1 ? "curve" : "curves"}`;
@@ -71,12 +82,11 @@ export class CurveTable {
 
   private showRow(row: HTMLElement, cells: HTMLElement[], index: number): void {
     const curve = this.listed[index]!;
-    const { curves, curvePoints } = this.model.frame!;
-    const [a, b, , , , countA, countB] = curves.subarray(8 * curve, 8 * curve + 8);
-    const [depth, area] = [curvePoints[8 * curve + 3]!, curvePoints[8 * curve + 7]!];
-    const names = [a!, b!].map((object) => this.model.objects[object]!.name);
+    const [depth, a, b] = ["depth", "enclosed_count_a", "enclosed_count_b"].map((name) => numberAt(this.curves, name, curve)!);
     const word = this.kindOf(curve);
-    const texts = [...names, word === "closed" ? rounded(area) : word, rounded(depth), `${countA} + ${countB}`];
+    const texts = [
+      ...SIDES.map((side) => this.nameOf(curve, side)), word === "closed" ? rounded(this.areaOf(curve)) : word, rounded(depth!), `${a} + ${b}`,
+    ];
     texts.forEach((text, i) => {
       if (cells[i]!.textContent !== text) cells[i]!.textContent = text;
     });
@@ -90,8 +100,7 @@ export class CurveTable {
     this.chosen = curve;
     this.window.reveal(index);
     this.window.draw();
-    const [x, y, z, depth, , , , area] = this.model.frame!.curvePoints.subarray(8 * curve, 8 * curve + 8);
-    this.flyTo([x!, y!, z!], Math.max(depth!, Math.sqrt(area!)));
+    this.flyTo(Array.from(vectorAt(this.curves, "centroid", curve)), Math.max(numberAt(this.curves, "depth", curve)!, Math.sqrt(this.areaOf(curve))));
   }
 
   private key(event: KeyboardEvent): void {
