@@ -2,7 +2,6 @@
 
 #include <zoltan.h>
 
-
 #include "core/error.hpp"
 
 namespace supple {

@@ -29,8 +29,8 @@ struct TaskStats {
   double exact_seconds = 0;  ///< part of `busy_seconds`
 };
 
-/// Splits jobs into tasks that load the workers evenly. Keeps its memory between steps. Many jobs are one task
-/// each, which takes no memory.
+/// Splits jobs into tasks that load the workers evenly. Keeps its memory between steps. Many jobs are one
+/// task each, which takes no memory.
 class ContactTasks {
  public:
   /// Makes one task for each job; the jobs stay where they are. With several workers and few jobs, it splits

@@ -39,7 +39,7 @@ class PairCache {
 
   std::vector<ObjectPair> begin_, stay_, end_;
   std::vector<ObjectPair> last_begin_, last_stay_;  // of the `update` before: scratch memory
-  std::vector<ObjectId> released_;  // since the last update, ascending
+  std::vector<ObjectId> released_;                  // since the last update, ascending
 };
 
 }  // namespace supple

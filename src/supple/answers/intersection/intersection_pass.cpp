@@ -98,8 +98,8 @@ void IntersectionPass::run_task(std::size_t task, Worker& worker) {
     test(candidates);
     worker.stats.exact_seconds += timer.lap();
   };
-  worker.traversal.find_triangle_pairs(input.pair, tasks_[task].root, worker.stats.traversal,
-                                       on_leaves, on_candidates);
+  worker.traversal.find_triangle_pairs(input.pair, tasks_[task].root, worker.stats.traversal, on_leaves,
+                                       on_candidates);
   Timer timer;
   if (search_.contacts && input.pair.same_object && input.object_a.neighbours != nullptr)
     for_neighbours(input, task, worker, test);

@@ -1,7 +1,6 @@
 #include "octree/volumes/moving_boxes.hpp"
 #include "octree/object_octree.hpp"
 
-
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 #include "octree/refit_bottom_up.hpp"
