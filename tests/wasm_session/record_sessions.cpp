@@ -11,8 +11,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "lists/lists_of_frames.hpp"
 #include "packed/packed_scene.hpp"
 #include "session.hpp"
 #include "supple/models.hpp"
@@ -24,7 +26,18 @@ namespace {
 using supple::viewer::SceneView;
 using supple::viewer::ViewedObject;
 
-constexpr std::uint32_t statistics_tag = 43;
+constexpr std::uint32_t column_tag = 33, statistics_tag = 43;
+
+/// The rows of a list in a frame.
+std::uint32_t count_of(const supple::ViewerMessage& frame, std::string_view name) {
+  std::uint32_t section = 0;
+  for (const supple::viewer::ListOfFrames& list : supple::viewer::lists_of_frames()) {
+    if (name == list.info->name)
+      return frame.has(column_tag, section) ? frame.section(column_tag, section).count : 0;
+    section += static_cast<std::uint32_t>(list.columns.size());
+  }
+  throw std::runtime_error("no list " + std::string(name));
+}
 
 /// The input of a session: each entry is a command as JSON text or a number of milliseconds to wait.
 struct Script {
@@ -190,8 +203,7 @@ nlohmann::json play(const Script& script, std::span<const std::byte> packed) {
       if (message.kind == supple::ViewerMessage::failure) ++failures;
       if (message.kind != supple::ViewerMessage::frame) continue;
       ++frames;
-      contacts += message.section(34).count;
-      if (message.has(36)) contacts += message.section(36).count;
+      contacts += count_of(message, "contacts") + count_of(message, "continuous_contacts");
     }
   };
   drain();

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <utility>
 
 #include "program/attach_descriptions.hpp"
 #include "program/program.hpp"

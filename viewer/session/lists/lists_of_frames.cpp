@@ -5,6 +5,7 @@
 #include <cstring>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "messages/frame_message.hpp"
 
@@ -114,17 +115,17 @@ const std::vector<ListOfFrames>& lists_of_frames() {
 /// Lists are cut at the limit, and lists whose rows belong to those of another one where these end.
 void FramePacker::add_lists(const FrameView& frame) {
   const ContactKinds kinds = with_included(frame.source.contacts());
-  std::vector<ListRows> rows = rows_of(frame.source.scene().result());
+  list_rows_ = rows_of(frame.source.scene().result(), std::move(list_rows_));
   for (const ListOfFrames& list : lists_of_frames()) {
-    std::size_t& count = rows[list.place].count;
+    std::size_t& count = list_rows_[list.place].count;
     if (!contains(kinds, list.info->answers)) count = 0;
     if (list.parent == list.place) count = limited(list.info->name, count);
   }
   std::uint32_t number = 0;
   for (const ListOfFrames& list : lists_of_frames()) {
-    ListRows& own = rows[list.place];
+    ListRows& own = list_rows_[list.place];
     if (list.parent != list.place) {
-      const auto end = end_of(list_infos()[list.parent].record, rows[list.parent], list.info->name);
+      const auto end = end_of(list_infos()[list.parent].record, list_rows_[list.parent], list.info->name);
       own.count = std::min(own.count, static_cast<std::size_t>(end));
     }
     for (const Column& column : list.columns) {

@@ -1,7 +1,6 @@
 #include "messages/answers.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <string>
 #include <vector>

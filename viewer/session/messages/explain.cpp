@@ -1,7 +1,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <optional>
 #include <string>
 
 #include "messages/answers.hpp"

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <tuple>
-#include <utility>
 
 #include "supple/inspection.hpp"
 

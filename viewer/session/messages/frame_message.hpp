@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "history/pair_history.hpp"
@@ -17,6 +16,7 @@
 #include "sources/paper_vertices.hpp"
 #include "sources/source.hpp"
 #include "supple/inspection.hpp"
+#include "supple/record_info.hpp"
 #include "supple/result_descriptions.hpp"
 
 namespace supple::viewer {
@@ -115,6 +115,7 @@ class FramePacker {
   std::vector<double> rows_;
   std::uint64_t last_row_ = 0;
   std::size_t sent_rows_ = 0;
+  std::vector<ListRows> list_rows_;  // of the frame that is packed
   std::vector<Omission> omissions_;
   std::vector<std::uint32_t> octree_levels_;
   std::vector<std::array<float, 8>> edges_;  // of the cells of one object

@@ -1,6 +1,5 @@
 #include "sources/simulation_source.hpp"
 
-#include <algorithm>
 #include <variant>
 
 #include "sources/extent.hpp"

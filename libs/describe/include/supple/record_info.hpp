@@ -161,10 +161,10 @@ struct ListRows {
   std::size_t count = 0;
 };
 /// The rows of all lists, in the order of `list_infos`; they belong to the owner of the lists. These are a
-/// `DetectResult`, or a structure with members of the same names.
+/// `DetectResult`, or a structure with members of the same names. `all` gives memory that is used again.
 template <class Lists>
-std::vector<ListRows> rows_of(const Lists& lists) {
-  std::vector<ListRows> all;
+std::vector<ListRows> rows_of(const Lists& lists, std::vector<ListRows> all = {}) {
+  all.clear();
   for_each_list([&](const auto&, auto member) {
     const auto& rows = member(lists);
     all.push_back({reinterpret_cast<const std::byte*>(rows.data()), rows.size()});
