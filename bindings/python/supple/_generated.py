@@ -750,7 +750,7 @@ CONTRACTS = {
     'role::weights':
         'See `role::weights` in supple/description.hpp.',
     'rows_of':
-        'The rows of all lists, in the order of `list_infos`; they belong to the owner of the lists. These are a `DetectResult`, or a structure with members of the same names.',
+        'The rows of all lists, in the order of `list_infos`; they belong to the owner of the lists. These are a `DetectResult`, or a structure with members of the same names. `all` gives memory that is used again.',
     'save_mesh':
         'Writes a file in the format of its extension: .obj, .off, .ply (binary little endian, double), .stl (binary, single precision). Text formats print the shortest digits that read back to the same double. Throws `Error` when the extension is unknown, when the file cannot be written, and when the mesh has edges or points of no triangle and the format is not OBJ.',
     'set_failure_handler':
