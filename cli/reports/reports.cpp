@@ -33,7 +33,7 @@ constexpr std::array outcomes_of_vertices{
     "was reported as inside or on the surface of it and is not",
     "was reported with a triangle that is not the nearest or with an inaccurate depth"};
 
-/// Of two elements.
+/// Describes a difference that names two elements.
 std::string describe(const Input& input, const auto& d) {
   const auto named = [&](FeatureKind kind, const std::array<std::uint32_t, 2>& ids, ObjectId object) {
     return fmt::format("{} of {}", element_name(kind, ids), one_line(input.name(object)));

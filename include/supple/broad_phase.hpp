@@ -96,7 +96,7 @@ class BroadPhase {
   /// - grid: O(n + k) unless many volumes share cells,
   /// - sweep: O(n log n + pairs that overlap along one axis),
   /// - brute: O(n²).
-  /// A call allocates no memory once the buffers are as large as the scene needs.
+  /// A call with at most 2^20 pairs allocates no memory once the buffers are as large as the scene needs.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres);
 

@@ -155,10 +155,10 @@ class Scene {
 
   /// Finds every contact of the requested kinds: intersections, penetration and pairs within the margins at
   /// the current positions, and continuous contacts within the step. The request defaults to the options of
-  /// the scene. Time depends on the objects that moved and on the overlapping volumes; no memory
-  /// is allocated after the largest step so far. An empty list of contacts means that nothing touches, unless
-  /// `DetectResult::untested` says that there was nothing to test. Throws `Error` when the request is out of
-  /// range.
+  /// the scene. Time depends on the objects that moved and on the overlapping volumes. No memory is
+  /// allocated after the largest step so far, except to sort more than 2^20 pairs of objects. An empty list
+  /// of contacts means that nothing touches, unless `DetectResult::untested` says that there was nothing to
+  /// test. Throws `Error` when the request is out of range.
   const DetectResult& detect(const DetectRequest& request = {});
   /// As `detect`, but apart from the steps of the scene: `result`, `verify` and the events do not change, and
   /// the result has no events and no manifolds. For a search within a step, for example of a solver that

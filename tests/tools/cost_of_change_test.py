@@ -1,5 +1,5 @@
-"""What a change costs: a member of a record needs a line in two files, an option with a rule a line in three. The
-test makes the change in a copy, compiles it, and finds the member or the option where users do."""
+"""What a change costs: a member of a record needs a line in two files, an option with a rule a line in three.
+The test makes the change in a copy, compiles it, and finds the member or the option where users do."""
 
 import pathlib
 import shutil

@@ -24,16 +24,19 @@ using Point = nb::ndarray<const double, nb::shape<3>, nb::c_contig, nb::device::
 /// Boxes of meshes that stay, and where transforms place them: along the axes, and turned with the mesh.
 class PlacedBoxes {
  public:
-  void add(const Point& center, const Point& half) {
+  /// Returns false, and adds nothing, when the transform places the box at no finite position.
+  bool add(const Point& center, const Point& half, const Transform& transform) {
     boxes_.push_back({.mesh_center = vector_of(center), .mesh_half = vector_of(half)});
+    const bool is_placed = place(boxes_.size() - 1, transform);
+    if (!is_placed) boxes_.pop_back();
+    return is_placed;
   }
-
-  /// Returns false, and moves nothing, when the transform places the box at no finite position.
+  /// Moves a box; the same.
   bool place(std::size_t i, const Transform& transform) {
     const Vec3d center = boxes_.at(i).mesh_center, half = boxes_[i].mesh_half;
     Box placed{.mesh_center = center, .mesh_half = half};
     placed.has_points = std::isfinite(norm(center)) && std::isfinite(norm(half));
-    Vec3d low = center, high = center;  // no points: nothing is near it
+    Vec3d low, high;
     for (int axis = 0; axis < 3 && placed.has_points; ++axis) {
       const double* const row = transform.data() + 4 * axis;
       double middle = row[3], extent = 0, size = std::fabs(row[3]);

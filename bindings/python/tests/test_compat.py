@@ -170,8 +170,7 @@ def test_boxes_are_never_further_apart_than_what_they_enclose(rng):
             objects.append(scene.add(corners * size + low, faces))
             objects[-1].set_transform(matrix)
             boxes.append(_core.PlacedBoxes())
-            boxes[-1].add(low + size / 2, size / 2)
-            assert boxes[-1].place(0, matrix)
+            assert boxes[-1].add(low + size / 2, size / 2, matrix)
         bound, distance = boxes[0].bounds(boxes[1])[0], scene.distance(*objects).distance
         assert bound <= distance
         assert len(boxes[0].near(boxes[1], None)) == 1 or distance > 0
@@ -234,7 +233,12 @@ def test_managers_keep_what_stays(at, monkeypatch):
             own.set_transform("box", matrix)
     with pytest.raises(ValueError, match="the transform of box is not finite"):
         own.set_transform("box", np.diag([1, np.nan, 1, 1]))
-    assert own.in_collision_internal() is False
+    far = np.eye(4)
+    far[:3] = 1.5e308
+    for name in ("box", "new"):  # a transform that is refused changes nothing
+        with pytest.raises(ValueError, match=f"the transform of {name} is not finite"):
+            own.add_object(name, box, far)
+    assert own.in_collision_internal() is False and own.in_collision_single(box) is True
     with pytest.raises(ValueError, match="the transform of __external is not finite"):
         own.in_collision_single(box, np.diag([1, np.inf, 1, 1]))
 

@@ -51,6 +51,11 @@ class Entry:
         return self._parts
 
 
+def check_placed(entry: Entry, is_placed: bool) -> None:
+    if not is_placed:
+        raise ValueError(f"the transform of {entry.mesh.name} is not finite, or moves it too far")
+
+
 class Places:
     """Where entries are: their boxes, and when they changed."""
 
@@ -63,16 +68,14 @@ class Places:
             self.add(entry)
 
     def add(self, entry: Entry) -> None:
+        check_placed(entry, self.boxes.add(*entry.half_box(), entry.transform))
         entry.places, entry.number = self, len(self.entries)
-        self.boxes.add(*entry.half_box())
         self.entries.append(entry)
-        self.changed.append(0)
-        self.structure = next(_changes)
-        self.move(entry, entry.transform)
+        self.structure = self.version = next(_changes)
+        self.changed.append(self.version)
 
     def move(self, entry: Entry, transform: Floats) -> None:
-        if not self.boxes.place(entry.number, transform):
-            raise ValueError(f"the transform of {entry.mesh.name} is not finite, or moves it too far")
+        check_placed(entry, self.boxes.place(entry.number, transform))
         entry.transform = transform
         self.changed[entry.number] = self.version = next(_changes)
 

@@ -87,6 +87,7 @@ class CollisionManager:
     def add_object(self, name: str, mesh: Any, transform: Any = None) -> Object:
         """Adds a mesh with a (4, 4) transform; replaces the one with this name."""
         entry = Entry(as_mesh(mesh, name=str(name)), _matrix(transform))
+        Places([entry])  # refuses the transform before anything changes
         added, replaced = self._world.object(entry), name in self._entries
         self._entries[name] = entry
         if replaced:

@@ -86,7 +86,7 @@ class PenetrationPass {
   };
   using Outcomes = JobOutcomes<list_count>;
   struct Worker {
-    std::unique_ptr<CurveMaker> curve_maker;  // where curves were asked for
+    std::unique_ptr<CurveMaker> curve_maker;  // null until a step asks for curves
     ObjectQueries queries;
     DistanceBatch distances;
     PenetrationLists found;
