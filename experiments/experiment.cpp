@@ -3,35 +3,32 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <optional>
+#include <string>
 #include <utility>
 
 #include "base/interruption.hpp"
 #include "base/run_program.hpp"
-#include "base/text.hpp"
 #include "program_2007/ablation.hpp"
 #include "program_2007/figures.hpp"
-#include "program_2007/sensitivity.hpp"
 #include "program_2007/trials.hpp"
-#include "report.hpp"
+#include "results.hpp"
 #include "studies/arity.hpp"
 #include "studies/claims.hpp"
 #include "studies/scaling.hpp"
 #include "studies/volumes.hpp"
+#include "supple/utf8.hpp"
 #include "table1/table1.hpp"
-#include "table1/table1_scenes.hpp"
 
 namespace supple::experiments {
 namespace {
+
+using Kind = ExperimentOptions::Kind;
 
 Table1Options table1_options(const ExperimentOptions& options) {
   Table1Options table1 = default_table1_options(options.quick);
   if (!options.objects.empty() || !options.scenes.empty()) table1.scenes.clear();
   for (const std::uint32_t objects : options.objects) table1.scenes.push_back(mixed_scene(objects));
-  for (const std::string& scene : options.scenes) {
-    const auto source = is_built_in(scene) ? Table1Scene::Source::built_in : Table1Scene::Source::file;
-    table1.scenes.push_back({source, scene});
-  }
+  for (const std::string& scene : options.scenes) table1.scenes.push_back(scene_called(scene));
   if (!options.scene_sizes.empty()) {
     std::vector<Table1Scene> resized;
     for (const Table1Scene& scene : table1.scenes) {
@@ -50,88 +47,48 @@ Table1Options table1_options(const ExperimentOptions& options) {
   return table1;
 }
 
-/// Runs an experiment other than table1.
-Report run(const ExperimentOptions& options, const std::filesystem::path& folder) {
-  if (options.kind == ExperimentOptions::Kind::scaling) {
-    ScalingOptions scaling = scaling_options(options.quick);
-    scaling.threads = options.threads.value_or(1);
-    scaling.seed = options.seed;
-    return run_scaling(scaling, !options.quiet);
+/// An experiment without runs that can be resumed. Options that differ only by `quick` have a seed of their own.
+Results run(const ExperimentOptions& given, const std::filesystem::path& folder) {
+  const bool shown = !given.quiet;
+  const auto with_seed = [&](auto options) {
+    options.seed = given.seed;
+    return options;
+  };
+  switch (given.kind) {
+    case Kind::scaling:
+      return run_scaling(scaling_options(given.quick, given.seed), shown);
+    case Kind::volumes:
+      return run_volumes(with_seed(volumes_options(given.quick)), shown);
+    case Kind::claims:
+      return run_claims(with_seed(claims_options(given.quick)), shown);
+    case Kind::ablation:
+      return run_ablation(with_seed(ablation_options(given.quick)), shown);
+    case Kind::trials:
+      return run_trials(with_seed(trial_options(given.quick)), shown);
+    case Kind::figures:
+      return run_figures(with_seed(figures_options(given.quick)), folder, shown);
+    default:
+      return run_arity(with_seed(arity_options(given.quick)), shown);
   }
-  if (options.kind == ExperimentOptions::Kind::volumes) {
-    VolumesOptions volumes = volumes_options(options.quick);
-    volumes.threads = options.threads.value_or(1);
-    volumes.seed = options.seed;
-    return run_volumes(volumes, !options.quiet);
-  }
-  if (options.kind == ExperimentOptions::Kind::claims) {
-    ClaimsOptions claims = claims_options(options.quick);
-    claims.seed = options.seed;
-    return run_claims(claims, !options.quiet);
-  }
-  if (options.kind == ExperimentOptions::Kind::ablation) {
-    AblationOptions ablation = ablation_options(options.quick);
-    ablation.threads = options.threads.value_or(1);
-    ablation.seed = options.seed;
-    return run_ablation(ablation, !options.quiet);
-  }
-  if (options.kind == ExperimentOptions::Kind::trials) {
-    TrialOptions trials = trial_options(options.quick);
-    trials.seed = options.seed;
-    return run_trials(trials, !options.quiet);
-  }
-  if (options.kind == ExperimentOptions::Kind::sensitivity) {
-    SensitivityOptions sensitivity = sensitivity_options(options.quick);
-    sensitivity.threads = options.threads;
-    sensitivity.seed = options.seed;
-    return run_sensitivity(sensitivity, folder, options.resume, !options.quiet);
-  }
-  if (options.kind == ExperimentOptions::Kind::figures) {
-    FiguresOptions figures = figures_options(options.quick);
-    figures.seed = options.seed;
-    return run_figures(figures, folder, !options.quiet);
-  }
-  ArityOptions arity = arity_options(options.quick);
-  arity.threads = options.threads.value_or(1);
-  arity.seed = options.seed;
-  return run_arity(arity, !options.quiet);
 }
 
 }  // namespace
 
-const char* name_of(ExperimentOptions::Kind kind) {
-  using Kind = ExperimentOptions::Kind;
-  switch (kind) {
-    case Kind::table1:
-      return "table1";
-    case Kind::scaling:
-      return "scaling";
-    case Kind::arity:
-      return "arity";
-    case Kind::volumes:
-      return "volumes";
-    case Kind::claims:
-      return "claims";
-    case Kind::ablation:
-      return "ablation";
-    case Kind::trials:
-      return "trials";
-    case Kind::sensitivity:
-      return "sensitivity";
-    case Kind::figures:
-      return "figures";
-  }
-  return "";
+const std::string& name_of(Kind kind) {
+  return experiment_names[static_cast<std::size_t>(kind)];
 }
 
 int run_experiment(const ExperimentOptions& options) {
   const std::filesystem::path folder =
-      options.output.empty() ? fmt::format("experiment_{}", name_of(options.kind)) : options.output;
-  std::optional<Report> result;
-  if (options.kind == ExperimentOptions::Kind::table1) {
+      options.output.empty() ? "experiment_" + name_of(options.kind) : options.output;
+  if (options.kind == Kind::table1 || options.kind == Kind::sensitivity) {
     const cli::Interruption interruption;
-    result = run_table1(table1_options(options), folder, options.resume, interruption, !options.quiet);
-    if (!result) {
+    const Table1Options table1 = table1_options(options);
+    const bool is_complete =
+        options.kind == Kind::table1
+            ? run_table1(table1, folder, options.resume, interruption, !options.quiet)
+            : run_sensitivity(table1, options.quick, folder, options.resume, interruption, !options.quiet);
+    if (!is_complete) {
       fmt::print(
           stderr,
           "supple: interrupted; {} has the complete runs, and the same command with --resume goes on\n",
@@ -139,15 +96,9 @@ int run_experiment(const ExperimentOptions& options) {
       return cli::exit_interrupted + interruption.signal();
     }
   } else {
-    result = run(options, folder);
+    write_results(run(options, folder), folder);
   }
-  const Report& report = *result;
-  write_report(report, folder);
-  if (!options.quiet) fmt::print("{}\n", text_of(report));
-  const int exit_status = make_page(folder);
-  if (exit_status == cli::exit_done && !options.quiet)
-    fmt::print("Written: {}\n", (folder / (report.name + ".html")).string());
-  return exit_status;
+  return judge(folder, options.quiet);
 }
 
 }  // namespace supple::experiments

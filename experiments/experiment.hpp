@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,9 +17,7 @@ struct ExperimentOptions {
   bool quick = false;
   bool quiet = false;
   std::string output;  ///< folder; empty: experiment_ and the kind
-  /// Without a value: one run per core for `table1`; one thread for runs by the clock and for the other
-  /// experiments, so that times measure work.
-  std::optional<std::uint32_t> threads{};
+  std::optional<std::uint32_t> threads{};  ///< parallel runs of table1 and sensitivity; none: one per core
   std::uint64_t seed = 1;
   // For table1; without a value, --quick decides.
   std::vector<std::uint32_t> objects{};  ///< of mixed scenes; these and `scenes` replace the built-in scenes
@@ -31,9 +30,12 @@ struct ExperimentOptions {
   bool resume = false;
 };
 
-const char* name_of(ExperimentOptions::Kind kind);
+/// In the order of `Kind`.
+inline const std::array<std::string, 9> experiment_names{"table1",   "scaling", "arity",       "volumes", "claims",
+                                                         "ablation", "trials",  "sensitivity", "figures"};
+const std::string& name_of(ExperimentOptions::Kind kind);
 
-/// Runs an experiment, writes its files and prints its tables. Returns the exit status of the program.
+/// Runs an experiment, writes its files and prints the verdicts on the claims. Returns the exit status of the program.
 int run_experiment(const ExperimentOptions& options);
 
 }  // namespace supple::experiments

@@ -1,6 +1,9 @@
 #include "experiment_options.hpp"
 
-#include <map>
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -37,31 +40,25 @@ constexpr const char* footer = R"(Examples:
   supple experiment trials
       The methods that the paper tried and rejected.
   supple experiment sensitivity
-      Whether other scenes, speeds or levels give the numbers of the paper. Takes half an hour.
+      Whether other scenes, speeds or levels give the numbers of the paper. Takes an hour.
   supple experiment figures
       The data of the paper's figures: modules, regions, spheres, pairs of nodes and their boxes.
 
 Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the
-paper's claims hold. The page needs python3 with matplotlib. Without it, the tables are written and the exit
-status is 2. experiments/README.md describes the experiments.)";
+paper's claims hold. The report needs python3 with matplotlib and scipy. Without them, the tables are written
+and the exit status is 2. experiments/README.md describes the experiments.)";
 
 void add_kind(CLI::App& app, ExperimentOptions& options) {
-  using Kind = ExperimentOptions::Kind;
-  const std::map<std::string, Kind> kinds{
-      {"table1", Kind::table1},   {"scaling", Kind::scaling},         {"arity", Kind::arity},
-      {"volumes", Kind::volumes}, {"claims", Kind::claims},           {"ablation", Kind::ablation},
-      {"trials", Kind::trials},   {"sensitivity", Kind::sensitivity}, {"figures", Kind::figures}};
-  const auto parse = [&options, kinds](const std::string& given) {
-    const auto found = kinds.find(given);
-    if (found == kinds.end())
+  const auto parse = [&options](const std::string& given) {
+    const auto found = std::find(experiment_names.begin(), experiment_names.end(), given);
+    if (found == experiment_names.end())
       throw CLI::ValidationError(
-          "experiment",
-          "there is no experiment '" + given +
-              "'; choose table1, scaling, arity, volumes, claims, ablation, trials, sensitivity or figures");
-    options.kind = found->second;
+          "experiment", fmt::format("there is no experiment '{}'; choose {} or {}", given,
+                                    fmt::join(experiment_names.begin(), experiment_names.end() - 1, ", "),
+                                    experiment_names.back()));
+    options.kind = static_cast<ExperimentOptions::Kind>(found - experiment_names.begin());
   };
-  app.add_option_function<std::string>(
-         "table1|scaling|arity|volumes|claims|ablation|trials|sensitivity|figures", parse, "The experiment")
+  app.add_option_function<std::string>(fmt::format("{}", fmt::join(experiment_names, "|")), parse, "The experiment")
       ->required()
       ->type_name("");
 }
@@ -154,15 +151,20 @@ void add_table1(CLI::App& app, ExperimentOptions& options, cli::Dependences& dep
   table1_only(fused);
   dependences.push_back(
       {fused, [&options] { return options.method.scene.comparison.lazy_refit; }, "--lazy-refit on"});
-  CLI::Option* const resume = app.add_flag("--resume", options.resume,
-                                           "table1 and sensitivity: Go on with the experiment in the output "
-                                           "folder; what is complete is not repeated");
-  dependences.push_back({resume,
-                         [&options] {
-                           return options.kind == ExperimentOptions::Kind::table1 ||
-                                  options.kind == ExperimentOptions::Kind::sensitivity;
-                         },
-                         "table1 or sensitivity"});
+  CLI::Option* const resume = app.add_flag(
+      "--resume", options.resume, "Go on with the experiment in the output folder; what is complete is not repeated");
+  CLI::Option* const threads =
+      cli::add_number(app, "--threads", options.threads, 0, 1024,
+                      "Parallel runs in simulated time, of one thread each (default and 0: one per core)");
+  for (CLI::Option* const option : {resume, threads}) {
+    option->description("table1 and sensitivity: " + option->get_description());
+    dependences.push_back({option,
+                           [&options] {
+                             return options.kind == ExperimentOptions::Kind::table1 ||
+                                    options.kind == ExperimentOptions::Kind::sensitivity;
+                           },
+                           "table1 or sensitivity"});
+  }
 }
 
 }  // namespace
@@ -173,16 +175,6 @@ void add_options(CLI::App& app, ExperimentOptions& options, cli::Dependences& de
   app.add_flag("--quick", options.quick, "Run a small version, in under a minute");
   app.add_option("--output", options.output, "Folder for the results (default: experiment_NAME)")
       ->type_name("DIR");
-  cli::add_number(app, "--threads", options.threads, 0, 1024,
-                  "Worker threads (default: 1); for table1 also the number of parallel runs in simulated "
-                  "time (default: one per core); 0 means one per core");
-  dependences.push_back({app.get_option("--threads"),
-                         [&options] {
-                           return options.kind != ExperimentOptions::Kind::claims &&
-                                  options.kind != ExperimentOptions::Kind::trials &&
-                                  options.kind != ExperimentOptions::Kind::figures;
-                         },
-                         "another experiment than claims, trials and figures, which have one thread"});
   cli::add_number(app, "--seed", options.seed, 0, 1'000'000'000, "Seed of the random numbers (default: 1)");
   add_table1(app, options, dependences);
   app.add_flag("--quiet", options.quiet, "Print no tables and no progress");

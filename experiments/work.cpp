@@ -1,14 +1,12 @@
 #include "work.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
-#include <cmath>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <system_error>
 #include <thread>
-#include <utility>
+#include <vector>
 
 #include "base/run_program.hpp"
 
@@ -16,10 +14,23 @@ namespace supple::experiments {
 
 void Work::done(std::uint64_t steps, const std::string& what) {
   done_ = std::min(done_ + steps, total_);
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const double part = static_cast<double>(done_) / static_cast<double>(std::max<std::uint64_t>(total_, 1));
-  const std::string left = part > 0 ? fmt::format(", {} left", duration(elapsed / part - elapsed)) : "";
-  progress_.update(done_, what + left);
+  progress_.update(done_, what);
+}
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+TimedDetection::TimedDetection(Scene& scene) {
+  total = seconds_of([&] { result = &scene.detect(); });
+  const StepStats& stats = result->stats;
+  const double share = stats.total_seconds > 0 ? total / stats.total_seconds : 0;
+  refit = share * stats.refit_seconds;
+  broad = share * stats.broad_phase_seconds;
+  narrow = share * stats.traversal_seconds;
+  exact = share * stats.exact_seconds;
 }
 
 void in_parallel(std::size_t count, std::optional<std::uint32_t> threads,
@@ -57,17 +68,6 @@ void in_parallel(std::size_t count, std::optional<std::uint32_t> threads,
   work();
   for (std::thread& thread : others) thread.join();
   if (fault) std::rethrow_exception(fault);
-}
-
-double least(const std::vector<double>& seconds) {
-  return seconds.empty() ? 0 : *std::min_element(seconds.begin(), seconds.end());
-}
-
-std::string duration(double seconds) {
-  const auto whole = static_cast<std::uint64_t>(std::ceil(std::max(seconds, 0.0)));
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
-  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
 }  // namespace supple::experiments

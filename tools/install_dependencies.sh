@@ -17,6 +17,7 @@ packages=(
   libhdf5-dev
   libcli11-dev libtomlplusplus-dev rapidjson-dev libfmt-dev
   python3-matplotlib  # draws the plots of experiments and benchmarks
+  python3-scipy       # intervals of experiments
   libgtest-dev nlohmann-json3-dev libssl-dev libbenchmark-dev
 )
 if [ "${1:-}" != "--without-viewer" ]; then

@@ -27,7 +27,7 @@ Simulation simulation_of(BoundingVolume volume, std::uint64_t seed) {
   Variant variant{{}, volume};
   variant.method.scene.contacts = ContactKinds::none;
   cli::Input input = read_scene(mixed_scene(9), {}, seed);
-  return build_variant(input, variant, 1);
+  return build_variant(input, variant);
 }
 
 /// A collision of two objects, at the step with the most pairs of leaves of the second after its begin.
@@ -66,39 +66,33 @@ Collision find_collision(std::uint64_t seed) {
                           longest_search));
 }
 
-/// The seconds of each module, over the steps of a simulation.
+/// The processor seconds of each module, over the steps of a simulation.
 struct Modules {
   double precomputation = 0, motion = 0, broad = 0, narrow = 0;
   std::uint64_t steps = 0;
 
-  void add(const Simulation& simulation, const StepStats& stats) {
+  void step(Simulation& simulation) {
+    const double seconds = seconds_of([&] { simulation.step(); });
+    const StepStats& stats = simulation.scene().result().stats;
+    const double share = seconds / (simulation.motion_seconds() + stats.total_seconds);  // of the wall clock
     ++steps;
-    motion += simulation.motion_seconds();
-    broad += stats.refit_seconds + stats.broad_phase_seconds;
-    narrow += stats.traversal_seconds + stats.sort_and_events_seconds;
+    motion += share * simulation.motion_seconds();
+    broad += share * (stats.refit_seconds + stats.broad_phase_seconds);
+    narrow += share * (stats.traversal_seconds + stats.sort_and_events_seconds);
   }
 };
 
 Table modules_table(const Modules& modules) {
-  Table table{"figures_1",
-              "Figure 1: the modules of the program",
-              {{"module", "Module"}, {"ms", "ms"}, {"per", "Per"}}};
+  Table table{"figures_1", {"module", "seconds", "per"}};
   const auto steps = static_cast<double>(modules.steps);
-  table.add({"pre-computation", modules.precomputation * 1e3, "program"});
-  table.add({"physical simulation", modules.motion / steps * 1e3, "step"});
-  table.add({"broad phase", modules.broad / steps * 1e3, "step"});
-  table.add({"narrow phase", modules.narrow / steps * 1e3, "step"});
+  table.add({"pre-computation", modules.precomputation, "program"});
+  table.add({"physical simulation", modules.motion / steps, "step"});
+  table.add({"broad phase", modules.broad / steps, "step"});
+  table.add({"narrow phase", modules.narrow / steps, "step"});
   return table;
 }
 
-std::vector<Column> with_frame(std::vector<Column> columns) {
-  columns.insert(columns.begin(), {"frame", "Frame"});
-  return columns;
-}
-
-const std::vector<Column> region_columns{
-    {"level", "Level"}, {"number", "Number"}, {"x", "x"},       {"y", "y"},
-    {"z", "z"},         {"edge", "Edge"},     {"leaf", "Leaf"}, {"objects", "Objects"}};
+const std::vector<std::string> region_columns{"level", "number", "x", "y", "z", "edge", "leaf", "objects"};
 
 std::vector<Cell> region_row(const SceneRegion& region) {
   return {std::uint64_t{region.level},   region.number,
@@ -108,13 +102,7 @@ std::vector<Cell> region_row(const SceneRegion& region) {
 }
 
 Table descent_table(const NodePairList& list) {
-  Table table{"figures_4",
-              "Figure 4: the pairs of nodes that collide, level by level",
-              {{"level", "Level"},
-               {"pairs", "Pairs"},
-               {"nodes_a", "Nodes of a"},
-               {"nodes_b", "Nodes of b"},
-               {"leaf_pairs", "Pairs of leaves"}}};
+  Table table{"figures_4", {"level", "pairs", "nodes_a", "nodes_b", "leaf_pairs"}};
   for (std::uint32_t level = 0; level < list.level_count(); ++level) {
     std::vector<bool> in_a(list.nodes_a.size()), in_b(list.nodes_b.size());
     std::uint64_t leaves = 0, of_a = 0, of_b = 0;
@@ -163,10 +151,6 @@ void write_meshes(const fs::path& path, const std::vector<cli::InputObject>& obj
   write_file(path, text);
 }
 
-void write_table(const fs::path& folder, const Table& table) {
-  write_file(folder / (table.name + ".csv"), csv_head() + csv_of(table));
-}
-
 }  // namespace
 
 FiguresOptions figures_options(bool quick) {
@@ -175,7 +159,7 @@ FiguresOptions figures_options(bool quick) {
   return options;
 }
 
-Report run_figures(const FiguresOptions& options, const fs::path& folder, bool show_progress) {
+Results run_figures(const FiguresOptions& options, const fs::path& folder, bool show_progress) {
   make_folder(folder);
   Work work(3, show_progress);
   const Collision collision = find_collision(options.seed);
@@ -188,27 +172,14 @@ Report run_figures(const FiguresOptions& options, const fs::path& folder, bool s
   Simulation with_spheres = simulation_of(BoundingVolume::sphere, options.seed);
   const auto half = static_cast<std::uint64_t>(options.frames) / 2;
   const std::uint64_t first = collision.step > half ? collision.step - half : 0;
-  Table snapshot{"figures_2", "Figure 2: the regions of the scene octree in the middle frame",
-                 region_columns};
-  Table regions{"figures_regions", "", with_frame(region_columns)};
-  Table spheres{"figures_spheres",
-                "",
-                {{"frame", ""}, {"object", ""}, {"x", ""}, {"y", ""}, {"z", ""}, {"radius", ""}}};
-  Table boxes{"figures_boxes",
-              "",
-              {{"frame", ""},
-               {"object", ""},
-               {"level", ""},
-               {"x0", ""},
-               {"y0", ""},
-               {"z0", ""},
-               {"x1", ""},
-               {"y1", ""},
-               {"z1", ""}}};
+  Table snapshot{"figures_2", region_columns}, regions{"figures_regions", region_columns};
+  regions.columns.insert(regions.columns.begin(), "frame");
+  Table spheres{"figures_spheres", {"frame", "object", "x", "y", "z", "radius"}},
+      boxes{"figures_boxes", {"frame", "object", "level", "x0", "y0", "z0", "x1", "y1", "z1"}};
   std::optional<Table> descent;
   std::string positions;
   for (std::uint64_t step = 1; step < first + static_cast<std::uint64_t>(options.frames); ++step) {
-    modules.add(*with_boxes, with_boxes->step().stats);
+    modules.step(*with_boxes);
     with_spheres.step();
     if (step < first) continue;
     const std::uint64_t frame = step - first;
@@ -237,32 +208,19 @@ Report run_figures(const FiguresOptions& options, const fs::path& folder, bool s
   const cli::Input input = read_scene(mixed_scene(9), {}, options.seed);
   write_meshes(folder / "figures.obj", input.objects);
   write_file(folder / "figures_positions.f32", positions);
-  for (const Table* const table : {&regions, &spheres, &boxes}) write_table(folder, *table);
   work.done(1, "files");
 
   const auto name = [&](ObjectId id) { return input.objects[id.index].mesh.name; };
-  Report report;
-  report.name = "figures";
-  report.title = "The figures of the paper, from our own data";
-  report.summary = fmt::format(
-      "The method of 2007 on the nine objects of table1_9. The figures show the collision of {} and {} at "
-      "{:.2f} s. Figures 3 and 5 are drawn from figures.obj, figures_positions.f32 (floats: frames × "
-      "vertices × "
-      "3), figures_regions.csv, figures_spheres.csv and figures_boxes.csv.",
-      name(collision.a), name(collision.b), static_cast<double>(collision.step) * input.simulation.time_step);
-  report.parameters = {{"seed", fmt::format("{}", options.seed)},
-                       {"frames", fmt::format("{}", options.frames)},
-                       {"middle", fmt::format("{}", collision.step - first)},
-                       {"objects", fmt::format("{} {}", collision.a.index, collision.b.index)},
-                       {"cube", fmt::format("{}", *edge_of(input))}};
-  report.sections = {{"Figure 1: modules of the program", {}, {modules_table(modules)}},
-                     {"Figure 2: the broad phase",
-                      {"Regions with two or more objects expand until level-allowed is reached. Inner "
-                       "regions have no number of "
-                       "objects, because objects are in leaves."},
-                      {std::move(snapshot)}},
-                     {"Figure 4: the narrow phase", {}, {std::move(descent.value())}}};
-  return report;
+  return {"figures",
+          {{"seed", fmt::format("{}", options.seed)},
+           {"frames", fmt::format("{}", options.frames)},
+           {"middle", fmt::format("{}", collision.step - first)},
+           {"objects", fmt::format("{} {}", collision.a.index, collision.b.index)},
+           {"collision", fmt::format("{} and {} at {:.2f} s", name(collision.a), name(collision.b),
+                                     static_cast<double>(collision.step) * input.simulation.time_step)},
+           {"cube", fmt::format("{}", *edge_of(input))}},
+          {modules_table(modules), std::move(snapshot), std::move(descent.value()), std::move(regions),
+           std::move(spheres), std::move(boxes)}};
 }
 
 }  // namespace supple::experiments

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "report.hpp"
+#include "results.hpp"
 
 namespace supple::experiments {
 
@@ -19,6 +19,6 @@ FiguresOptions figures_options(bool quick);
 /// Also writes what has no table into the folder: the meshes (figures.obj), the positions of each frame as
 /// floats (figures_positions.f32: frames × vertices × 3), the regions and the spheres of each frame
 /// (figures_regions.csv, figures_spheres.csv), and the boxes of the colliding leaves (figures_boxes.csv).
-Report run_figures(const FiguresOptions& options, const std::filesystem::path& folder, bool show_progress);
+Results run_figures(const FiguresOptions& options, const std::filesystem::path& folder, bool show_progress);
 
 }  // namespace supple::experiments

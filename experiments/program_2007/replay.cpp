@@ -7,9 +7,8 @@
 #include "table1/table1_scenes.hpp"
 
 namespace supple::experiments {
-namespace {
 
-std::array<Vec3d, 2> bounds_of(const std::vector<Vec3d>& positions) {
+std::array<Vec3d, 2> bounds_of(std::span<const Vec3d> positions) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<Vec3d, 2> bounds{Vec3d{infinity, infinity, infinity}, Vec3d{-infinity, -infinity, -infinity}};
   for (const Vec3d& p : positions) {
@@ -20,8 +19,6 @@ std::array<Vec3d, 2> bounds_of(const std::vector<Vec3d>& positions) {
   }
   return bounds;
 }
-
-}  // namespace
 
 Replay replay_of(const Table1Scene& scene, std::uint64_t seed, int frames, int steps_per_frame) {
   constexpr double latest_start = 60;

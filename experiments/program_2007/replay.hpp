@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct Replay {
   std::optional<Border> border{};
   std::vector<Frame> frames{};
 };
+
+/// The box of some points, by the loop that the motion of 2007 has.
+std::array<Vec3d, 2> bounds_of(std::span<const Vec3d> positions);
 
 /// Frames of a scene, every `steps_per_frame` steps, from the first step after a second on in which triangles
 /// of different objects are near each other, or from the sixtieth second on.

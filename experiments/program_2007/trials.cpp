@@ -7,14 +7,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "fit.hpp"
-#include "judgement.hpp"
 #include "program_2007/replay.hpp"
 #include "supple/scene.hpp"
 #include "work.hpp"
@@ -214,68 +211,66 @@ std::vector<TrianglePairs> exact_pairs(const Replay& replay) {
   return all;
 }
 
-struct TrialCost {
-  std::vector<double> seconds;  ///< of each round
-  double vertices = 0, candidates = 0, contacts = 0, missed = 0;
-  double triangles = 0, triangles_once = 0;  ///< read by the refit; those of all objects in pairs
-};
-
+/// What a trial reads and finds in a frame, on average.
 template <class Find>
-void measure(const Replay& replay, const std::vector<TrianglePairs>& exact, TrialCost& cost, Find find) {
-  double seconds = 0;
-  const bool is_first = cost.seconds.empty();
+void measure(const Replay& replay, const std::vector<TrianglePairs>& exact, const char* trial, int round, Find find,
+             Table& table) {
+  double seconds = 0, vertices = 0, candidates = 0, contacts = 0, missed = 0;
+  const auto frames = static_cast<double>(replay.frames.size());
   for (std::size_t f = 0; f < replay.frames.size(); ++f) {
     Found found;
     seconds += seconds_of([&] { found = find(replay.frames[f]); });
-    if (!is_first) continue;
-    cost.vertices += static_cast<double>(found.vertices_read);
-    cost.candidates += static_cast<double>(found.candidates.size());
-    cost.contacts += static_cast<double>(exact[f].size());
-    for (const auto& pair : exact[f]) cost.missed += found.candidates.contains(pair) ? 0 : 1;
+    vertices += static_cast<double>(found.vertices_read);
+    candidates += static_cast<double>(found.candidates.size());
+    contacts += static_cast<double>(exact[f].size());
+    for (const auto& pair : exact[f]) missed += found.candidates.contains(pair) ? 0 : 1;
   }
-  cost.seconds.push_back(seconds);
+  table.add({replay.name, std::string(trial), static_cast<std::uint64_t>(round), seconds / frames, vertices / frames,
+             candidates / frames, contacts / frames, missed / frames});
 }
 
-/// The number of triangles of the objects whose boxes overlap another.
-std::size_t triangles_in_pairs(const Replay& replay, const Replay::Frame& frame) {
-  std::set<std::uint32_t> objects;
-  for_each_pair(frame, [&](std::uint32_t a, std::uint32_t b) { objects.insert({a, b}); });
-  std::size_t triangles = 0;
-  for (const std::uint32_t object : objects) triangles += replay.objects[object].triangles.size();
-  return triangles;
+/// The hierarchy of 2007: its candidates are its pairs of leaves. A corner that it reads is a vertex read.
+void measure_hierarchy(const Replay& replay, int round, Table& table) {
+  Hierarchy hierarchy(replay);
+  double seconds = 0, corners = 0, candidates = 0;
+  const auto frames = static_cast<double>(replay.frames.size());
+  for (const Replay::Frame& frame : replay.frames) {
+    StepStats stats;
+    seconds += seconds_of([&] { stats = hierarchy.find(frame); });
+    corners += 3 * static_cast<double>(stats.triangles_refitted);
+    candidates += static_cast<double>(stats.candidate_pairs);
+  }
+  table.add({replay.name, std::string("the hierarchy"), static_cast<std::uint64_t>(round), seconds / frames,
+             corners / frames, candidates / frames, Cell(), Cell()});
 }
 
-constexpr std::array trial_names{"the hierarchy", "neighbours of a vertex", "regions of the scene octree",
-                                 "the common region"};
-
-std::array<TrialCost, 4> measure_all(const Replay& replay, int rounds, Work& work) {
+void measure_all(const Replay& replay, int rounds, Work& work, Table& table) {
   const std::vector<TrianglePairs> exact = exact_pairs(replay);
-  const RootCube root = cube_around((*replay.border)[0], (*replay.border)[1]);
-  const std::vector<Box> regions = regions_of_level(root, 2);
-  std::array<TrialCost, 4> costs;
+  const std::vector<Box> regions = regions_of_level(cube_around((*replay.border)[0], (*replay.border)[1]), 2);
   for (int round = 0; round < rounds; ++round) {
-    Hierarchy hierarchy(replay);
-    double seconds = 0;
-    for (const Replay::Frame& frame : replay.frames) {
-      StepStats stats;
-      seconds += seconds_of([&] { stats = hierarchy.find(frame); });
-      if (round > 0) continue;
-      costs[0].vertices += 3 * static_cast<double>(stats.triangles_refitted);
-      costs[0].candidates += static_cast<double>(stats.candidate_pairs);
-      costs[0].triangles += static_cast<double>(stats.triangles_refitted);
-      costs[0].triangles_once += static_cast<double>(triangles_in_pairs(replay, frame));
-    }
-    costs[0].seconds.push_back(seconds);
+    measure_hierarchy(replay, round, table);
     Neighbours neighbours(replay);
-    measure(replay, exact, costs[1], [&](const Replay::Frame& frame) { return neighbours.find(frame); });
-    measure(replay, exact, costs[2],
-            [&](const Replay::Frame& frame) { return by_regions(replay, frame, regions); });
-    measure(replay, exact, costs[3],
-            [&](const Replay::Frame& frame) { return by_common_region(replay, frame); });
+    measure(replay, exact, "neighbours of a vertex", round,
+            [&](const Replay::Frame& frame) { return neighbours.find(frame); }, table);
+    measure(replay, exact, "regions of the scene octree", round,
+            [&](const Replay::Frame& frame) { return by_regions(replay, frame, regions); }, table);
+    measure(replay, exact, "the common region", round,
+            [&](const Replay::Frame& frame) { return by_common_region(replay, frame); }, table);
     work.done(1, replay.name);
   }
-  costs[0].contacts = costs[3].contacts;
-  return costs;
+}
+
+/// What a refit of all objects reads in a frame, and one of the objects whose boxes overlap another.
+void add_corners(const Replay& replay, Table& table) {
+  double all = 0, in_pairs = 0;
+  for (const TriangleMesh& mesh : replay.objects) all += 3 * static_cast<double>(mesh.triangles.size());
+  for (const Replay::Frame& frame : replay.frames) {
+    std::set<std::uint32_t> objects;
+    for_each_pair(frame, [&](std::uint32_t a, std::uint32_t b) { objects.insert({a, b}); });
+    for (const std::uint32_t object : objects)
+      in_pairs += 3 * static_cast<double>(replay.objects[object].triangles.size());
+  }
+  table.add({replay.name, all, in_pairs / static_cast<double>(replay.frames.size())});
 }
 
 /// Objects in the regions of a level, as cubes and as the spheres around these cubes.
@@ -325,114 +320,24 @@ TrialOptions trial_options(bool quick) {
   return options;
 }
 
-Report run_trials(const TrialOptions& options, bool show_progress) {
+Results run_trials(const TrialOptions& options, bool show_progress) {
   std::vector<Table1Scene> scenes{mixed_scene(9), {Table1Scene::Source::built_in, "nine"}};
   if (options.with_humans) scenes.push_back({Table1Scene::Source::built_in, "three_humans"});
-  Table table{
-      "trials",
-      "A step of each trial: time (the fastest round) and its ratio to the hierarchy (median of the rounds)",
-      {{"scene", "Scene"},
-       {"trial", "Trial"},
-       {"ms", "ms"},
-       {"times", "× hierarchy"},
-       {"times_error", "± error", 2},
-       {"vertices", "Vertices read"},
-       {"candidates", "Candidates"},
-       {"contacts", "Contacts"},
-       {"missed", "Missed"}}};
-  Table spheres{"trials_spheres",
-                "Objects in the regions of a level, and pairs of objects in the same region, in a step",
-                {{"scene", "Scene"},
-                 {"level", "Level"},
-                 {"in_cubes", "In cubes"},
-                 {"in_spheres", "In spheres"},
-                 {"pairs_in_cubes", "Pairs in cubes"},
-                 {"pairs_in_spheres", "Pairs in spheres"}}};
-  std::array<Verdict, 4> verdicts{};
-  std::array<double, 4> missed{};
-  std::array<std::string, 4> reasons;
-  std::array<std::optional<Estimate>, 4> least_times;  // of the scene in which a trial is best
-  std::vector<double> read_shares;                     // by scene
-  double all_missed = 0, all_contacts = 0;
+  Table trials{"trials",
+               {"scene", "trial", "round", "seconds", "vertices", "candidates", "contacts", "missed"}},
+      corners{"trials_corners", {"scene", "all", "in_pairs"}},
+      spheres{"trials_spheres",
+              {"scene", "level", "in_cubes", "in_spheres", "pairs_in_cubes", "pairs_in_spheres"}};
   Work work(scenes.size() * static_cast<std::uint64_t>(options.rounds), show_progress);
   for (const Table1Scene& scene : scenes) {
     const Replay replay = replay_of(scene, options.seed, options.frames, 5);
-    const std::array<TrialCost, 4> costs = measure_all(replay, options.rounds, work);
-    const auto frames = static_cast<double>(replay.frames.size());
-    for (std::size_t i = 0; i < costs.size(); ++i) {
-      const Estimate times = ratio_of(costs[i].seconds, costs[0].seconds);
-      table.add({replay.name, std::string(trial_names[i]), least(costs[i].seconds) / frames * 1e3, times.mean,
-                 times.error, costs[i].vertices / frames, costs[i].candidates / frames,
-                 costs[i].contacts / frames, costs[i].missed / frames});
-      // More time than the hierarchy is a ratio that is not below 1.
-      const Verdict less = below(times, 1);
-      const Verdict here = less == Verdict::holds           ? Verdict::does_not_hold
-                           : less == Verdict::does_not_hold ? Verdict::holds
-                                                            : Verdict::cannot_tell;
-      verdicts[i] = reasons[i].empty() ? here : both(verdicts[i], here);
-      missed[i] += costs[i].missed;
-      if (!least_times[i] || times.mean < least_times[i]->mean) least_times[i] = times;
-      reasons[i] += fmt::format(
-          "{}{} times the time of the hierarchy{} ({})", reasons[i].empty() ? "" : ", ", text_of(times),
-          costs[i].missed > 0
-              ? fmt::format(", {:.1f} % of the contacts missed", 100 * costs[i].missed / costs[i].contacts)
-              : "",
-          replay.name);
-    }
-    all_missed += costs[1].missed;
-    all_contacts += costs[1].contacts;
-    read_shares.push_back(costs[0].triangles / costs[0].triangles_once);
+    measure_all(replay, options.rounds, work, trials);
+    add_corners(replay, corners);
     add_spheres(replay, spheres);
   }
-  std::vector<double> in_cubes, in_spheres;
-  for (const auto& row : spheres.rows) {
-    in_cubes.push_back(std::get<double>(row[4]));
-    in_spheres.push_back(std::get<double>(row[5]));
-  }
-  const Estimate shared = ratio_of_sums(in_spheres, in_cubes);
-  const char* const time_of_trial = "time of the trial / of the hierarchy, in its best scene";
-  Report report;
-  report.name = "trials";
-  report.title = "The trials that the paper rejects";
-  report.summary =
-      "Small programs of this experiment repeat the trials on the same frames. Each finds the pairs of "
-      "triangles "
-      "whose boxes overlap, as the hierarchy of the paper does.";
-  report.parameters = {{"frames", fmt::format("{}", options.frames)},
-                       {"rounds", fmt::format("{}", options.rounds)},
-                       {"seed", fmt::format("{}", options.seed)}};
-  report.claims = {
-      {"neighbours", "6",
-       "The neighbours of a vertex do not do: “the changeable motion can make parts of the surface that are "
-       "distant in one time step be close in the next”.",
-       verdict_of(missed[1] > 0),
-       fmt::format("Two rings around the pairs of the frame before: {}.", reasons[1]),
-       Estimate{100 * all_missed / all_contacts, NAN}, "% of the contacts missed"},
-      {"scene-octree", "6",
-       "The scene's octree is “too expensive”, because it “requires a check of all the vertices”.",
-       verdicts[2], fmt::format("Regions of level 2: {}.", reasons[2]), least_times[2], time_of_trial},
-      {"fewer-vertices", "6",
-       "“We decided to work with a hierarchy because the number of vertices to be checked is less”.",
-       below(estimate_of(read_shares), 1),
-       fmt::format("The refit of the parts that collide reads {} times the triangles of the objects whose "
-                   "boxes overlap, "
-                   "because each node of each level reads what is below it. A refit from the leaves to the "
-                   "root reads "
-                   "each of these triangles once.",
-                   text_of(estimate_of(read_shares))),
-       estimate_of(read_shares),
-       "triangles read by the lazy refit / by one from the leaves, mean of the scenes"},
-      {"common-region", "6", "The common region of two boxes “requires more computation” than the hierarchy.",
-       verdicts[3], fmt::format("{}.", reasons[3]), least_times[3], time_of_trial},
-      {"octree-of-spheres", "5.1",
-       "In a scene octree of spheres “there is less accuracy” than in one of cubes.", above(shared, 1),
-       fmt::format("With the spheres around the regions and around the objects, {} times as many pairs of "
-                   "objects share a "
-                   "region.",
-                   text_of(shared)),
-       shared, "pairs of objects that share a region, spheres / cubes"}};
-  report.sections = {{"Narrow phase", {}, {table}}, {"Broad phase", {}, {spheres}}};
-  return report;
+  return {"trials",
+          {{"frames", fmt::format("{}", options.frames)}, {"seed", fmt::format("{}", options.seed)}},
+          {std::move(trials), std::move(corners), std::move(spheres)}};
 }
 
 }  // namespace supple::experiments

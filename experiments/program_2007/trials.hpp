@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "report.hpp"
+#include "results.hpp"
 
 namespace supple::experiments {
 
@@ -18,6 +18,6 @@ TrialOptions trial_options(bool quick);
 /// The methods that the paper tried and rejected: in the narrow phase the neighbours of vertices, the regions
 /// of the scene octree and the common region (6), in the broad phase an octree of spheres (5.1). Each is a
 /// small program of this experiment, compared with the hierarchy that the paper chose.
-Report run_trials(const TrialOptions& options, bool show_progress);
+Results run_trials(const TrialOptions& options, bool show_progress);
 
 }  // namespace supple::experiments

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "report.hpp"
+#include "results.hpp"
 #include "supple/inspection.hpp"
-#include "work.hpp"
 
 namespace supple::experiments {
 
@@ -15,8 +14,7 @@ struct ArityOptions {
   std::uint32_t rings = 512;      ///< of the tori: r² triangles
   bool with_bikes = true;
   std::vector<std::size_t> box_counts{1000, 10'000, 100'000};  ///< of scenes, ascending
-  int frames = 5;                                              ///< ≥ 1; the fastest counts
-  std::uint32_t threads = 1;
+  int rounds = 5;                                              ///< ≥ 1
   std::uint64_t seed = 1;
 };
 
@@ -25,7 +23,8 @@ ArityOptions arity_options(bool quick);
 /// The mean level of the leaves; 0 for an octree without leaves.
 double mean_depth(const OctreeStatistics& octree);
 
-/// Trees of two, four and eight children, of objects and of the scene.
-Report run_arity(const ArityOptions& options, bool show_progress);
+/// Trees of two, four and eight children, of objects and of the scene, with one thread. Times are the least of
+/// the rounds.
+Results run_arity(const ArityOptions& options, bool show_progress);
 
 }  // namespace supple::experiments

@@ -1,6 +1,5 @@
 #include "studies/box_field.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -8,8 +7,8 @@
 
 namespace supple::experiments {
 
-BoxField::BoxField(std::size_t count, std::uint64_t seed)
-    : side_(static_cast<float>(std::cbrt(8.0 * static_cast<double>(count)))) {
+BoxField::BoxField(std::size_t count, std::uint64_t seed, std::size_t stride)
+    : side_(static_cast<float>(std::cbrt(8.0 * static_cast<double>(count)))), stride_(stride) {
   std::mt19937_64 random(seed);
   // The distributions differ between standard libraries.
   const auto uniform = [&](double low, double high) {
@@ -32,7 +31,7 @@ BoxField::BoxField(std::size_t count, std::uint64_t seed)
 }
 
 void BoxField::move() {
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+  for (std::size_t i = 0; i < boxes_.size(); i += stride_) {
     for (int axis = 0; axis < 3; ++axis) {
       float& velocity = velocities_[i][axis];
       if ((boxes_[i].min[axis] < 0 && velocity < 0) || (boxes_[i].max[axis] > side_ && velocity > 0))
@@ -43,23 +42,14 @@ void BoxField::move() {
   }
 }
 
-BroadPhaseOptions broad_phase_of_2007(const BoxField& field) {
+BroadPhaseOptions broad_phase_of_2007(const BoxField& field, bool grows) {
   BroadPhaseOptions options;
   options.threads = 1;
   options.method = BroadPhaseMethod::octree;
   options.scene_octree = with_method_of_2007({}).scene_octree;
-  Aabb all;
-  for (const Aabb& box : field.boxes()) {
-    for (int axis = 0; axis < 3; ++axis) {
-      all.min[axis] = std::min(all.min[axis], box.min[axis]);
-      all.max[axis] = std::max(all.max[axis], box.max[axis]);
-    }
-  }
-  options.scene_octree.root =
-      cube_around({all.min.x, all.min.y, all.min.z}, {all.max.x, all.max.y, all.max.z});
-  std::uint32_t level = 1;
-  while (level < most_full_levels && options.scene_octree.root->edge / (2 << level) > 1) ++level;
-  options.scene_octree.max_level = level;
+  options.scene_octree.root = field.cube();
+  std::uint32_t& level = options.scene_octree.max_level;
+  while (grows && level < most_full_levels && field.cube().edge / (2 << level) > 1) ++level;
   return options;
 }
 

@@ -14,19 +14,22 @@ namespace supple::experiments {
 /// along each axis, and the sides of their cube reflect them. The boxes are the same on every machine.
 class BoxField {
  public:
-  BoxField(std::size_t count, std::uint64_t seed);
+  /// Of each `stride` boxes, one moves.
+  BoxField(std::size_t count, std::uint64_t seed, std::size_t stride = 1);
 
   const std::vector<Aabb>& boxes() const { return boxes_; }
   void move();
+  RootCube cube() const { return {{0, 0, 0}, side_}; }  ///< of the field
 
  private:
   float side_;
+  std::size_t stride_;
   std::vector<Aabb> boxes_;
   std::vector<Vec3f> velocities_;
 };
 
-/// The broad phase of 2007 for a field, with one thread: the root is the cube around the boxes, and
-/// level-allowed is that of regions about as large as the boxes.
-BroadPhaseOptions broad_phase_of_2007(const BoxField& field);
+/// The broad phase of 2007 with one thread. The root is the cube of the field, and level-allowed that of the
+/// preset; `grows`: it is that of regions about as large as the boxes.
+BroadPhaseOptions broad_phase_of_2007(const BoxField& field, bool grows = false);
 
 }  // namespace supple::experiments

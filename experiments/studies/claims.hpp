@@ -1,47 +1,37 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
-#include "report.hpp"
+#include "results.hpp"
 
 namespace supple::experiments {
 
 struct ClaimsOptions {
-  std::size_t volumes = 4096;     ///< of each kind, for the cost of one test
-  std::size_t spheres = 100'000;  ///< in the scene octree
-  /// Boxes for the comparison of sweeps, ascending.
-  std::vector<std::size_t> swept_boxes{100, 1000, 10'000, 30'000};
+  std::size_t volumes = 4096;            ///< of each kind, for the cost of one test
+  std::size_t spheres = 100'000;         ///< in the scene octree
   std::uint32_t largest_frequency = 64;  ///< of the spheres: 20 f² triangles
-  double motion_seconds = 10;            ///< simulated, for the stability of integrators
-  int rounds = 9;                        ///< ≥ 1; the fastest counts
+  double motion_seconds = 10;            ///< simulated, for integrators, areas and strains
+  int rounds = 9;                        ///< ≥ 2
   std::uint64_t seed = 1;
 };
 
 ClaimsOptions claims_options(bool quick);
 
-/// Measures single claims of the paper that need no experiment of their own.
-Report run_claims(const ClaimsOptions& options, bool show_progress);
-
-/// One claim with its measurements.
-struct Finding {
-  Claim claim;
-  Table table;
-};
+/// What single claims of the paper need that no other experiment measures, with one thread.
+Results run_claims(const ClaimsOptions& options, bool show_progress);
 
 // Volumes and octrees; each runs alone.
-Finding cost_of_tests(const ClaimsOptions& options);
-Finding region_tests(const ClaimsOptions& options);
-Finding sweeps_on_one_axis_and_three(const ClaimsOptions& options);
-Finding depth_of_small_triangles(const ClaimsOptions& options);
-Finding depth_of_many_triangles(const ClaimsOptions& options);
-Finding regions_of_objects(const ClaimsOptions& options);
-Finding leaves_of_levels(const ClaimsOptions& options);
-Finding spheres_of_the_equations(const ClaimsOptions& options);
+Table cost_of_tests(const ClaimsOptions& options);
+Table region_tests(const ClaimsOptions& options);
+Table depths(const ClaimsOptions& options);
+Table regions_of_objects(const ClaimsOptions& options);
+Table spheres_of_the_equations(const ClaimsOptions& options);
 // Motion.
-Finding translation_of_volumes(const ClaimsOptions& options);
-Finding one_loop(const ClaimsOptions& options);
-Finding primitives_and_motion(const ClaimsOptions& options);
-Finding stability_of_integrators(const ClaimsOptions& options);
+Table translation_of_volumes(const ClaimsOptions& options);
+Table loops(const ClaimsOptions& options);
+Table steps_of_models(const ClaimsOptions& options);
+Table energies_of_integrators(const ClaimsOptions& options);
+Table areas_and_strains(const ClaimsOptions& options);
 
 }  // namespace supple::experiments

@@ -1,28 +1,22 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "program_2007/few_objects.hpp"
-#include "report.hpp"
-#include "work.hpp"
+#include "results.hpp"
+#include "studies/broad_phases.hpp"
 
 namespace supple::experiments {
 
 struct ScalingOptions {
-  std::vector<std::size_t> object_counts;  ///< ascending
-  FewObjectsOptions few_objects;
-  std::vector<std::uint32_t> frequencies;  ///< of icospheres, ascending: 20 f² triangles
-  double brute_seconds = 5;                ///< brute force skips steps that would take longer
-  int frames = 5;                          ///< in motion, ≥ 1; the fastest counts
-  std::uint32_t threads = 1;
-  std::uint64_t seed = 1;
+  BroadPhasesOptions broad_phases{};
+  std::vector<std::uint32_t> frequencies{8, 16, 32, 64, 128, 224};  ///< of icospheres, ascending: 20 f² triangles
+  int rounds = 7;                                                   ///< in motion, ≥ 2
 };
 
-ScalingOptions scaling_options(bool quick);
+ScalingOptions scaling_options(bool quick, std::uint64_t seed);
 
-/// Measures time and tests against the number of objects and of vertices, and fits powers.
-Report run_scaling(const ScalingOptions& options, bool show_progress);
+/// Times and tests against the number of objects and of vertices.
+Results run_scaling(const ScalingOptions& options, bool show_progress);
 
 }  // namespace supple::experiments

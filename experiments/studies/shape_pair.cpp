@@ -33,44 +33,38 @@ TriangleMesh moved(TriangleMesh mesh, Vec3d offset) {
   return mesh;
 }
 
-PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
-                      int frames, std::uint32_t threads, BoundingVolume volume, Descent descent) {
-  SceneOptions options;
-  options.bounding_volume = volume;
-  options.comparison.descent = descent;
+PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree, int rounds,
+                      const SceneOptions& given) {
+  SceneOptions options = given;
   options.contacts = ContactKinds::none;
-  options.threads = threads;
+  options.threads = 1;
   Scene scene(options);
   const ObjectOptions object = regular(octree);
   PairCost cost;
   ObjectId id_a, id_b;
-  std::vector<double> builds;
   do {
-    if (!builds.empty()) {
+    if (!cost.build.empty()) {
       scene.remove(id_a);
       scene.remove(id_b);
     }
-    builds.push_back(seconds_of([&] {
+    cost.build.push_back(seconds_of([&] {
       id_a = scene.add(a, object);
       id_b = scene.add(b, object);
     }));
-  } while (builds.size() < 3 && builds.back() < 0.1);
-  cost.build_seconds = least(builds);
+  } while (cost.build.size() < 3);
   cost.octree_a = SceneInspector(scene).octree_statistics(id_a);
   cost.octree_b = SceneInspector(scene).octree_statistics(id_b);
-  std::vector<double> refits, traversals;
   std::array<std::vector<Vec3d>, 2> places_a{a.positions, moved(a, {0x1p-30, 0, 0}).positions},
       places_b{b.positions, moved(b, {0, 0x1p-30, 0}).positions};
   scene.detect();
-  for (int frame = 1; frame <= frames; ++frame) {
-    scene.set_positions(id_a, places_a[static_cast<std::size_t>(frame % 2)]);
-    scene.set_positions(id_b, places_b[static_cast<std::size_t>(frame % 2)]);
-    cost.stats = scene.detect().stats;
-    refits.push_back(cost.stats.refit_seconds);
-    traversals.push_back(cost.stats.traversal_seconds);
+  for (int round = 1; round <= rounds; ++round) {
+    scene.set_positions(id_a, places_a[static_cast<std::size_t>(round % 2)]);
+    scene.set_positions(id_b, places_b[static_cast<std::size_t>(round % 2)]);
+    const TimedDetection detection(scene);
+    cost.stats = detection.result->stats;
+    cost.refit.push_back(detection.refit);
+    cost.traversal.push_back(detection.narrow);
   }
-  cost.refit_seconds = least(refits);
-  cost.traversal_seconds = least(traversals);
   return cost;
 }
 

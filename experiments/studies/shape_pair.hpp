@@ -15,20 +15,17 @@ namespace supple::experiments {
 TriangleMesh turned(TriangleMesh mesh);
 TriangleMesh moved(TriangleMesh mesh, Vec3d offset);
 
-/// The cost of one pair of objects by stage; each time is the minimum of several.
+/// The processor seconds of one pair of objects by stage, in each round, and what the last round counted.
 struct PairCost {
-  double build_seconds = 0;  ///< time to add both objects, including their octrees
-  double refit_seconds = 0;  ///< of both octrees
-  double traversal_seconds = 0;
+  std::vector<double> build, refit, traversal;
   OctreeStatistics octree_a, octree_b;
-  StepStats stats;  ///< of the last step
+  StepStats stats;
 };
 
-/// Moves both objects by 2^-30 in every step, so that every octree is refitted. Runs the stages separately,
-/// without exact tests. The octrees are regular.
-PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
-                      int frames, std::uint32_t threads, BoundingVolume volume = BoundingVolume::aabb,
-                      Descent descent = Descent::both_sides);
+/// Moves both objects by 2^-30 in every round, so that every octree is refitted. Runs the stages separately,
+/// without exact tests and with one thread. The octrees are regular.
+PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree, int rounds,
+                      const SceneOptions& options = {});
 
 /// The descent into the regular octrees of both objects.
 NodePairList node_pairs_of(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree);

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "report.hpp"
+#include "results.hpp"
 
 namespace supple::experiments {
 
@@ -11,14 +11,13 @@ struct VolumesOptions {
   std::uint32_t frequency = 64;  ///< of the spheres: 20 f² triangles
   int deformed_frames = 40;      ///< frames of each deforming scene, ≥ 1
   int rounds = 5;                ///< ≥ 1; the fastest counts
-  std::uint32_t threads = 1;
   std::uint64_t seed = 1;
 };
 
 VolumesOptions volumes_options(bool quick);
 
-/// Compares all kinds of bounding volumes and all ways to build the octrees of objects: the same contacts at
-/// which cost.
-Report run_volumes(const VolumesOptions& options, bool show_progress);
+/// All kinds of bounding volumes and all ways to build the octrees of objects on the same frames, with one
+/// thread.
+Results run_volumes(const VolumesOptions& options, bool show_progress);
 
 }  // namespace supple::experiments

@@ -14,6 +14,10 @@ Table1Scene mixed_scene(std::uint32_t objects, std::optional<double> size) {
   return {Table1Scene::Source::mixed, fmt::format("table1_{}", objects), objects, size};
 }
 
+Table1Scene scene_called(const std::string& name) {
+  return {is_built_in(name) ? Table1Scene::Source::built_in : Table1Scene::Source::file, name};
+}
+
 bool is_met(const cli::OptionNeed& need, const Table1Method& method) {
   return std::any_of(method.volumes.begin(), method.volumes.end(), [&](auto volume) {
     SceneOptions scene = method.scene;
@@ -72,10 +76,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Table1Options& o
   rows.emplace_back("--runs", fmt::format("{}", options.runs));
   rows.emplace_back("--seed", fmt::format("{}", options.seed));
   rows.emplace_back("--seconds", fmt::format("{}", options.simulated_seconds));
-  if (options.program_clock) {
-    rows.emplace_back("--program-clock", fmt::format("{}", *options.program_clock));
-    rows.emplace_back("--threads", fmt::format("{}", options.threads.value_or(1)));
-  }
+  if (options.program_clock) rows.emplace_back("--program-clock", fmt::format("{}", *options.program_clock));
   return rows;
 }
 

@@ -27,6 +27,8 @@ struct Table1Scene {
 
 /// The number of objects of a mixed scene, `table1_9`.
 Table1Scene mixed_scene(std::uint32_t objects, std::optional<double> size = {});
+/// A scene that is built into the program, or a scene file.
+Table1Scene scene_called(const std::string& name);
 
 /// How collisions are found. The defaults are the method of the paper.
 struct Table1Method {
@@ -74,9 +76,7 @@ struct Table1Options {
   std::uint32_t runs = 5;                 ///< ≥ 1; run k has the seed `seed` + k
   double simulated_seconds = 600;         ///< per run that is counted in simulated time; 0: no such runs
   std::optional<double> program_clock{};  ///< seconds of detection and motion per run; none: no such runs
-  /// Parallel runs by steps, 0 for one per core, or threads of a run by the clock. Without a value: one run
-  /// per core, and one thread, so that times measure work.
-  std::optional<std::uint32_t> threads{};
+  std::optional<std::uint32_t> threads{};  ///< parallel runs in simulated time; none and 0: one per core
   std::uint64_t seed = 1;
 };
 
