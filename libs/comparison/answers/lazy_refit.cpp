@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "comparison/methods.hpp"
+#include "comparison/volumes/volume_kernels.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/query_kernels.hpp"
@@ -36,12 +37,10 @@ bool LazyRefit::refit_object(ObjectOctree& octree, const VertexBuffer& vertices,
     all_finite = all_finite && is_finite(p);
     extend(bounds, p, p);
   };
-  if (!octree.unused_vertices_.empty()) {
-    for (const Triangle& triangle : octree.triangles_) std::for_each(triangle.begin(), triangle.end(), add);
+  if (!box || !octree.unused_vertices_.empty()) {
+    for_each_used_vertex(vertices, octree.unused_vertices_, add);
     for (const std::uint32_t vertex : octree.unused_vertices_)
       all_finite = all_finite && is_finite(vertices[vertex]);
-  } else if (!box) {
-    for (std::uint32_t vertex = 0; vertex < octree.vertex_count_; ++vertex) add(vertex);
   }
   octree.box_ = box && octree.unused_vertices_.empty() ? *box : rounded(bounds);
   if (all_finite && octree.volumes_)

@@ -39,6 +39,19 @@ void for_each_vertex(const RefittedOctree& octree, std::uint32_t n, int child, c
   }
 }
 
+/// Calls `visit(vertex)` once for each vertex that a triangle uses, in the order of the positions in memory.
+template <class Visit>
+void for_each_used_vertex(const VertexBuffer& vertices, std::span<const std::uint32_t> unused_vertices,
+                          const Visit& visit) {
+  const auto count = static_cast<std::uint32_t>(vertices.size());
+  std::uint32_t vertex = 0;
+  for (const std::uint32_t unused : unused_vertices) {
+    for (; vertex < unused; ++vertex) visit(vertex);
+    ++vertex;
+  }
+  for (; vertex < count; ++vertex) visit(vertex);
+}
+
 /// The oriented boxes of the children of a node, one array per number.
 struct alignas(64) ChildOrientedBoxes {
   float center[3][node_width];

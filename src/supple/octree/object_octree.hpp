@@ -119,7 +119,8 @@ class ObjectOctree {
   void mark_with_ancestors(std::uint32_t node);
   RefittedOctree refitted(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                           bool are_nodes_current = true) const {
-    return {nodes_, boxes_.data(), triangles_, leaf_vertices(), vertices, inert, are_nodes_current};
+    return {nodes_,   boxes_.data(), triangles_,       leaf_vertices(),
+            vertices, inert,         unused_vertices_, are_nodes_current};
   }
 
   std::vector<OctreeNode> nodes_;

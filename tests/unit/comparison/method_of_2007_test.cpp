@@ -214,6 +214,51 @@ TEST(LazyRefit, TakesBoundsThatTheMotionFound) {
   }
 }
 
+/// A mesh in which each third vertex, also the first and the last, is far away and of no triangle.
+TriangleMesh with_unused_vertices(const TriangleMesh& mesh) {
+  const auto place_of = [](std::uint32_t vertex) { return vertex + vertex / 2 + 1; };
+  const auto count = static_cast<std::uint32_t>(mesh.positions.size());
+  TriangleMesh result{mesh.name, std::vector<Vec3d>(place_of(count - 1) + 2, Vec3d{50, 50, 50}),
+                      mesh.triangles};
+  for (std::uint32_t v = 0; v < count; ++v) result.positions[place_of(v)] = mesh.positions[v];
+  for (Triangle& triangle : result.triangles) {
+    for (std::uint32_t& vertex : triangle) vertex = place_of(vertex);
+  }
+  return result;
+}
+
+TEST(LazyRefit, GivesAnObjectTheVolumesOfAFullRefit) {
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    const SceneOptions options{.bounding_volume = volume, .threads = 1};
+    Scene full(options), lazily(lazy(options));
+    const std::vector<TriangleMesh> meshes{make_icosphere(3), with_unused_vertices(random_soup(90, 1, 0.1, 4)),
+                                           make_model("pawn"), with_unused_vertices(make_model("fish"))};
+    for (Scene* const scene : {&full, &lazily}) {
+      for (const TriangleMesh& mesh : meshes) scene->add(mesh, {.octree = octree_of_2007()});
+    }
+    for (int step = 0; step < 4; ++step) {
+      const std::vector<ObjectId> ids = full.objects();
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        std::vector<Vec3d> positions = meshes[i].positions;
+        for (Vec3d& p : positions) p = {p.x, p.y * (1 + 0.2 * step * p.x), p.z + 7.0 * static_cast<double>(i)};
+        for (Scene* const scene : {&full, &lazily}) scene->set_positions(ids[i], positions);
+      }
+      full.detect();
+      lazily.detect();
+      for (const ObjectId id : ids) {
+        const OctreeCell expected = SceneInspector(full).cells(id, 0)[0];
+        const OctreeCell found = SceneInspector(lazily).cells(id, 0)[0];
+        EXPECT_EQ(found.sphere.radius, expected.sphere.radius);
+        for (int axis = 0; axis < 3; ++axis) {
+          EXPECT_EQ(found.sphere.center[axis], expected.sphere.center[axis]);
+          EXPECT_EQ(SceneInspector(lazily).bounds(id).min[axis], SceneInspector(full).bounds(id).min[axis]);
+          EXPECT_EQ(SceneInspector(lazily).bounds(id).max[axis], SceneInspector(full).bounds(id).max[axis]);
+        }
+      }
+    }
+  }
+}
+
 TEST(LazyRefit, NeedsBoxesOrSpheres) {
   SceneOptions options = lazy({.bounding_volume = BoundingVolume::obb});
   EXPECT_THROW(Scene{options}, Error);

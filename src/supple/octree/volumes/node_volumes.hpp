@@ -26,7 +26,8 @@ struct RefittedOctree {
   std::span<const Triangle> triangles;
   LeafVertexArrays leaves;
   const VertexBuffer& vertices;
-  std::span<const std::uint8_t> inert;  ///< a byte per triangle, or empty
+  std::span<const std::uint8_t> inert;             ///< a byte per triangle, or empty
+  std::span<const std::uint32_t> unused_vertices;  ///< of no triangle; ascending
   /// False: the volumes of deeper nodes are out of date.
   bool are_nodes_current = true;
 };
