@@ -11,7 +11,6 @@
 #include "fit.hpp"
 #include "judgement.hpp"
 #include "studies/box_field.hpp"
-#include "studies/three_axis_sweep.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/error.hpp"
 
@@ -26,31 +25,30 @@ BroadPhaseOptions options_of(std::size_t method, const BoxField& field) {
   if (method == octree_of_2007_method) return broad_phase_of_2007(field);
   BroadPhaseOptions options;
   options.threads = 1;
-  options.method = method == sweep || method == sweep3 ? BroadPhaseMethod::sweep
-                   : method == brute                   ? BroadPhaseMethod::brute
-                   : method == grid                    ? BroadPhaseMethod::grid
-                                                       : BroadPhaseMethod::octree;
+  options.method = method == sweep    ? BroadPhaseMethod::sweep
+                   : method == sweep3 ? BroadPhaseMethod::sweep3
+                   : method == brute  ? BroadPhaseMethod::brute
+                   : method == grid   ? BroadPhaseMethod::grid
+                                      : BroadPhaseMethod::octree;
   return options;
 }
 
 /// One method over the same motion.
 class Method {
  public:
-  Method(std::size_t method, const BoxField& field) : broad_phase_(options_of(method, field)) {
-    const auto pairs = broad_phase_.find_object_pairs(field.boxes());
-    if (method == sweep3) lists_.emplace(field.boxes(), pairs);
+  Method(std::size_t method, const BoxField& field)
+      : broad_phase_(options_of(method, field)), counts_exchanges_(method == sweep3) {
+    broad_phase_.find_object_pairs(field.boxes());
   }
-  std::size_t step(const std::vector<Aabb>& boxes) {
-    return lists_ ? lists_->update(boxes) : broad_phase_.find_object_pairs(boxes).size();
-  }
-  std::optional<std::uint64_t> tests() const {
-    if (lists_) return lists_->exchanges();
-    return broad_phase_.stats().object_pairs_tested;
+  std::size_t step(const std::vector<Aabb>& boxes) { return broad_phase_.find_object_pairs(boxes).size(); }
+  std::uint64_t tests() const {
+    const BroadPhaseStats& stats = broad_phase_.stats();
+    return counts_exchanges_ ? stats.exchanges : stats.object_pairs_tested;
   }
 
  private:
   BroadPhase broad_phase_;
-  std::optional<ThreeAxisSweep> lists_;
+  bool counts_exchanges_;
 };
 
 /// Seconds of a step, by method and round; tests of the last step.
@@ -80,7 +78,7 @@ Costs measure(std::size_t count, const FewObjectsOptions& options) {
         for (const std::vector<Aabb>& boxes : frames) found = methods[m]->step(boxes);
       });
       costs.seconds[m].push_back(seconds / static_cast<double>(steps));
-      costs.tests[m] = methods[m]->tests().value_or(0);
+      costs.tests[m] = methods[m]->tests();
       if (pairs.value_or(found) != found) throw Error("the methods of the broad phase found different pairs");
       pairs = found;
     }

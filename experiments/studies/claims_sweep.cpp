@@ -9,7 +9,6 @@
 #include "judgement.hpp"
 #include "studies/box_field.hpp"
 #include "studies/claims.hpp"
-#include "studies/three_axis_sweep.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/error.hpp"
 #include "work.hpp"
@@ -45,9 +44,9 @@ struct SweepCost {
 SweepCost cost_of_sweeps(std::size_t count, std::size_t stride, const ClaimsOptions& options) {
   PartlyMoving field(count, stride, options.seed);
   BroadPhase octree({.method = BroadPhaseMethod::octree, .threads = 1}),
-      sweep({.method = BroadPhaseMethod::sweep, .threads = 1});
-  octree.find_object_pairs(field.boxes());
-  ThreeAxisSweep lists(field.boxes(), sweep.find_object_pairs(field.boxes()));
+      sweep({.method = BroadPhaseMethod::sweep, .threads = 1}),
+      sweep3({.method = BroadPhaseMethod::sweep3, .threads = 1});
+  for (BroadPhase* const method : {&octree, &sweep, &sweep3}) method->find_object_pairs(field.boxes());
   std::array<std::vector<double>, 3> seconds;
   SweepCost cost;
   for (int round = 0; round < options.rounds; ++round) {
@@ -55,10 +54,10 @@ SweepCost cost_of_sweeps(std::size_t count, std::size_t stride, const ClaimsOpti
     std::array<std::size_t, 3> pairs{};
     seconds[0].push_back(seconds_of([&] { pairs[0] = octree.find_object_pairs(field.boxes()).size(); }));
     seconds[1].push_back(seconds_of([&] { pairs[1] = sweep.find_object_pairs(field.boxes()).size(); }));
-    seconds[2].push_back(seconds_of([&] { pairs[2] = lists.update(field.boxes()); }));
+    seconds[2].push_back(seconds_of([&] { pairs[2] = sweep3.find_object_pairs(field.boxes()).size(); }));
     if (pairs[0] != pairs[1] || pairs[0] != pairs[2])
       throw Error("the octree, the sweep along one axis and the lists on three axes found different pairs");
-    cost.exchanges = lists.exchanges();
+    cost.exchanges = sweep3.stats().exchanges;
     cost.pairs = pairs[0];
   }
   cost.octree_seconds = least(seconds[0]);

@@ -87,7 +87,7 @@ RootCube cube_around(Vec3d lowest, Vec3d highest);
 inline constexpr std::uint32_t most_full_levels = 6;
 
 /// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
-/// is an `Error` when the broad phase is grid, sweep or brute.
+/// is an `Error` when the broad phase is grid, sweep, brute or sweep3.
 struct SceneOctreeOptions {
   /// Depth at which regions no longer expand, 1 to 20; 0 means 20. Far from the origin the depth is less,
   /// because floats cannot represent finer regions there. It counts levels of eight children for every arity,

@@ -51,6 +51,9 @@ enum class BroadPhaseMethod : std::uint8_t {
   grid,
   sweep,  ///< sweep and prune along one axis; needs `use_comparison_methods`
   brute,  ///< every object against every other; needs `use_comparison_methods`
+  /// Sweep and prune along three axes, in lists that stay sorted from step to step (Baraff 1992); needs
+  /// `use_comparison_methods`.
+  sweep3,
 };
 
 /// Kinds of contacts, a set: `ContactKinds::intersection | ContactKinds::continuous`.

@@ -204,7 +204,7 @@ class SameBytes(ProgramTest):
     def test_threads_and_broad_phases(self):
         expected = self.output("--threads", "1")
         self.assertIn('"pairs":[[', expected)
-        for arguments in (["--threads", "2"], ["--threads", "5"], ["--broad-phase", "sweep"], ["--broad-phase", "brute"]):
+        for arguments in (["--threads", "2"], ["--threads", "5"], ["--broad-phase", "sweep"], ["--broad-phase", "brute"], ["--broad-phase", "sweep3"]):
             with self.subTest(arguments=arguments):
                 self.assertEqual(self.output(*arguments), expected)
 

@@ -231,7 +231,8 @@ TEST(LazyRefit, GivesAnObjectTheVolumesOfAFullRefit) {
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
     const SceneOptions options{.bounding_volume = volume, .threads = 1};
     Scene full(options), lazily(lazy(options));
-    const std::vector<TriangleMesh> meshes{make_icosphere(3), with_unused_vertices(random_soup(90, 1, 0.1, 4)),
+    const std::vector<TriangleMesh> meshes{make_icosphere(3),
+                                           with_unused_vertices(random_soup(90, 1, 0.1, 4)),
                                            make_model("pawn"), with_unused_vertices(make_model("fish"))};
     for (Scene* const scene : {&full, &lazily}) {
       for (const TriangleMesh& mesh : meshes) scene->add(mesh, {.octree = octree_of_2007()});
@@ -240,7 +241,8 @@ TEST(LazyRefit, GivesAnObjectTheVolumesOfAFullRefit) {
       const std::vector<ObjectId> ids = full.objects();
       for (std::size_t i = 0; i < ids.size(); ++i) {
         std::vector<Vec3d> positions = meshes[i].positions;
-        for (Vec3d& p : positions) p = {p.x, p.y * (1 + 0.2 * step * p.x), p.z + 7.0 * static_cast<double>(i)};
+        for (Vec3d& p : positions)
+          p = {p.x, p.y * (1 + 0.2 * step * p.x), p.z + 7.0 * static_cast<double>(i)};
         for (Scene* const scene : {&full, &lazily}) scene->set_positions(ids[i], positions);
       }
       full.detect();
