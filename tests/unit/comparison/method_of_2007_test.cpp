@@ -268,7 +268,7 @@ TEST(LazyRefit, NeedsBoxesOrSpheres) {
   EXPECT_THROW(Scene{options}, Error);
 }
 
-/// Counts the tests of Figure 4, and those of the triangles in the leaves, on the cells of the inspector.
+/// Counts the tests of Figure 4 on the cells of the inspector.
 std::uint64_t tests_of_figure_4(const Scene& scene, ObjectId a, ObjectId b) {
   const SceneInspector inspector(scene);
   const NodePairList list = inspector.node_pairs(a, b);
@@ -285,11 +285,7 @@ std::uint64_t tests_of_figure_4(const Scene& scene, ObjectId a, ObjectId b) {
   std::uint64_t tests = 0;
   for (const NodePairList::Pair& pair : list.pairs) {
     const OctreeCell &cell_a = list.nodes_a[pair.a], &cell_b = list.nodes_b[pair.b];
-    if (cell_a.is_leaf && cell_b.is_leaf) {
-      // The triangle of each leaf with the box of the other leaf, and the boxes of both triangles.
-      tests += 3;
-      continue;
-    }
+    if (cell_a.is_leaf && cell_b.is_leaf) continue;
     const auto of_a = children(a, cell_a, 8), of_b = children(b, cell_b, 8);
     if (cell_a.is_leaf || cell_b.is_leaf) {
       tests += std::max(of_a.size(), of_b.size());
@@ -308,13 +304,21 @@ std::uint64_t tests_of_figure_4(const Scene& scene, ObjectId a, ObjectId b) {
 TEST(OneSideFirst, CountsTheTestsOfFigure4) {
   SceneOptions options{.contacts = ContactKinds::none, .threads = 1};
   options.comparison.descent = Descent::one_side_first;
-  Scene scene(options);
-  const ObjectOptions object{.octree = octree_of_2007()};
-  const ObjectId a = scene.add(random_soup(80, 1, 0.3, 1), object);
-  const ObjectId b = scene.add(random_soup(60, 1, 0.3, 2), object);
-  const std::uint64_t tests = scene.detect().stats.boxes_tested;
-  EXPECT_EQ(tests, tests_of_figure_4(scene, a, b));
-  EXPECT_GT(tests, 500u);
+  for (const auto& [count_a, count_b] : {std::pair(80u, 60u), {1u, 60u}, {60u, 1u}, {1u, 1u}}) {
+    Scene scene(options);
+    const ObjectOptions object{.octree = octree_of_2007()};
+    const ObjectId a = scene.add(random_soup(count_a, 1, 0.3, 1), object);
+    const ObjectId b = scene.add(random_soup(count_b, 1, 0.3, 2), object);
+    const DetectResult& result = scene.detect();
+    EXPECT_EQ(result.stats.boxes_tested, tests_of_figure_4(scene, a, b));
+    if (count_a == 80) {
+      EXPECT_GT(result.stats.boxes_tested, 500u);
+    }
+    if (count_a + count_b == 61) {
+      EXPECT_EQ(result.object_pairs.size(), 1u);
+      EXPECT_GT(result.stats.boxes_tested, 0u);
+    }
+  }
 }
 
 TEST(MethodOf2007, HasTheRootAndItsChildrenAlways) {
