@@ -26,12 +26,8 @@ struct Adder {
   bool only_positions = false;  ///< without the elements
 
   ObjectId add(const auto&... motion) {
-    TriangleMesh mesh{object.mesh.name, start_positions(object, simulation.options().border), {}, {}, {}};
-    if (!only_positions) {
-      mesh.triangles = object.mesh.triangles;
-      mesh.edges = object.mesh.edges;
-      mesh.points = object.mesh.points;
-    }
+    TriangleMesh mesh = only_positions ? TriangleMesh{object.mesh.name, {}, {}} : object.mesh;
+    mesh.positions = start_positions(object, simulation.options().border);
     return simulation.add(mesh, options, motion...);
   }
 

@@ -97,8 +97,7 @@ class BroadPhase {
   /// - grid: O(n + k) unless many volumes share cells,
   /// - sweep: O(n log n + pairs that overlap along one axis),
   /// - brute: O(n²),
-  /// - sweep3: O(n + k + exchanges of two ends), or as sweep when a volume appears, disappears or becomes
-  ///   empty.
+  /// - sweep3: O(n + k + exchanges of two ends), or as sweep when a volume appears or becomes empty.
   /// A call with at most 2^20 pairs allocates no memory once the buffers are as large as the scene needs.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres);

@@ -66,9 +66,8 @@ struct ObjectOctreeOptions {
 enum class Descent : std::uint8_t {
   both_sides,  ///< all children of one node with all of the other, with vector instructions
   /// As in the paper's Figure 4: the children of the first node with the second node, then those that collide
-  /// with the children of the second node. `StepStats::boxes_tested` counts these tests, and not those
-  /// of triangles in the leaves, where Figure 4 ends. For contacts at rest; it is slower and needs
-  /// `use_comparison_methods`.
+  /// with the children of the second node. `StepStats::boxes_tested` counts only these tests. For
+  /// contacts at rest; it is slower and needs `use_comparison_methods`.
   one_side_first,
 };
 

@@ -101,7 +101,7 @@ struct StepStats {
   std::uint64_t object_pairs = 0;
   std::uint64_t node_pairs_visited = 0;  ///< pairs of octree nodes in the narrow phase
   /// Tests of two volumes, of children and in leaves; empty children do not count. With
-  /// `Descent::one_side_first` only those of children, as in the paper's Figure 4.
+  /// `Descent::one_side_first` only those of children, because the paper's Figure 4 ends at the leaves.
   std::uint64_t boxes_tested = 0;
   /// Triangle pairs whose boxes overlap and that share no vertex.
   std::uint64_t candidate_pairs = 0;

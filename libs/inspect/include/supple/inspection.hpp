@@ -104,7 +104,7 @@ struct PairExplanation {
   /// Not empty when oriented boxes or k-DOPs are apart, although their boxes overlap; see
   /// `OctreeCell::slabs`.
   std::vector<Slab> slabs_a{}, slabs_b{};
-  /// Of the octree cells, as `OctreeCell::number_level` and `number`.
+  /// The names of the octree cells: `OctreeCell::number_level` and `number`.
   std::uint32_t level_a = 0, level_b = 0;
   std::optional<std::uint64_t> number_a = 0, number_b = 0;
   /// At `exact_test`: the unit direction from a to b between the closest points of the triangles, and their
