@@ -153,7 +153,7 @@ void broad_phase(benchmark::State& state) {
 BENCHMARK(broad_phase)
     ->ArgsProduct({{1000, 10000, 100000},
                    {static_cast<int>(BroadPhaseMethod::octree), static_cast<int>(BroadPhaseMethod::grid),
-                    static_cast<int>(BroadPhaseMethod::sweep)}})
+                    static_cast<int>(BroadPhaseMethod::sweep), static_cast<int>(BroadPhaseMethod::sweep3)}})
     ->Args({10000, static_cast<int>(BroadPhaseMethod::brute)})
     ->Unit(benchmark::kMillisecond);
 

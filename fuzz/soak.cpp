@@ -192,7 +192,8 @@ class Soak {
     header.scene = input_.simulation.scene;
     header.scene_file = input_.scene_text;
     for (std::size_t i = 0; i < recorded_ids_.size(); ++i)
-      header.objects.push_back(cli::recorded_object(recorded_ids_[i], input_.objects[i]));
+      header.objects.push_back(
+          cli::recorded_object(recorded_ids_[i], input_.objects[i], input_.simulation.border));
     recorder_.emplace(options_.record, header);
   }
 

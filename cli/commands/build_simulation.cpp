@@ -9,26 +9,33 @@
 namespace supple::cli {
 namespace {
 
+/// Where the motion of an object starts: its octree is built there.
+std::vector<Vec3d> start_positions(const InputObject& object, const std::optional<Border>& border) {
+  std::vector<Vec3d> positions = object.mesh.positions;
+  if (const auto* const wave = motion_of<WaveMotion>(object))
+    apply_wave_motion(*wave, border, object.mesh.positions, 0, positions);
+  if (const auto frames = frames_of(object)) frames->positions(0, positions);
+  return positions;
+}
+
 /// Adds an object and returns its id; one overload per kind of motion.
 struct Adder {
   Simulation& simulation;
   const InputObject& object;
   const ObjectOptions& options;
   bool only_positions = false;  ///< without the elements
-  TriangleMesh mesh = object.mesh;
 
   ObjectId add(const auto&... motion) {
-    if (only_positions) mesh = {mesh.name, std::move(mesh.positions), {}, {}, {}};
+    TriangleMesh mesh = only_positions ? TriangleMesh{object.mesh.name, {}, {}} : object.mesh;
+    mesh.positions = start_positions(object, simulation.options().border);
     return simulation.add(mesh, options, motion...);
   }
 
   ObjectId operator()(const WaveMotion& motion) {
-    const auto swayed = [motion, border = simulation.options().border, rest = mesh.positions](
-                            double seconds, std::span<Vec3d> positions) {
+    return add(MotionFunction([motion, border = simulation.options().border, rest = object.mesh.positions](
+                                  double seconds, std::span<Vec3d> positions) {
       apply_wave_motion(motion, border, rest, seconds, positions);
-    };
-    swayed(0, mesh.positions);
-    return add(MotionFunction(swayed));
+    }));
   }
 
   ObjectId operator()(const MassSpringMotion& motion) { return add(motion); }
@@ -36,10 +43,9 @@ struct Adder {
 
   /// Frames: step k ends with frame k.
   ObjectId operator()(const auto&) {
-    const auto read = frames_of(object)->positions;
-    read(0, mesh.positions);
-    return add(MotionFunction(
-        [read, time_step = simulation.options().time_step](double seconds, std::span<Vec3d> positions) {
+    return add(
+        MotionFunction([read = frames_of(object)->positions, time_step = simulation.options().time_step](
+                           double seconds, std::span<Vec3d> positions) {
           read(static_cast<std::uint64_t>(std::llround(seconds / time_step)), positions);
         }));
   }
@@ -63,11 +69,11 @@ void apply_to_objects(const viewer::Overrides<ObjectOptions>& given, bool as_200
   split_parts(input);
 }
 
-RecordedObject recorded_object(ObjectId id, const InputObject& object) {
+RecordedObject recorded_object(ObjectId id, const InputObject& object, const std::optional<Border>& border) {
   ObjectOptions options = object.options;
   options.edges.insert(options.edges.end(), object.mesh.edges.begin(), object.mesh.edges.end());
   options.points.insert(options.points.end(), object.mesh.points.begin(), object.mesh.points.end());
-  return {id, std::move(options), object.mesh.positions, object.mesh.triangles};
+  return {id, std::move(options), start_positions(object, border), object.mesh.triangles};
 }
 
 ObjectId add_positions(Simulation& simulation, const InputObject& object) {

@@ -12,8 +12,9 @@ void apply(const MethodOptions& options, Input& input);
 /// Replaces options of all objects, and splits the objects into their parts where wanted.
 void apply_to_objects(const viewer::Overrides<ObjectOptions>& given, bool as_2007, bool parts, Input& input);
 
-/// An object of an input, for the header of a recording.
-RecordedObject recorded_object(ObjectId id, const InputObject& object);
+/// An object of an input, for the header of a recording: at the positions at which `add_object` adds it to a
+/// simulation with this border.
+RecordedObject recorded_object(ObjectId id, const InputObject& object, const std::optional<Border>& border);
 
 /// Adds an object of an input at its start positions. Throws `Error` as `Simulation::add` does, or when a
 /// frame of a sequence does not fit the object.

@@ -89,7 +89,7 @@ RecordingHeader header_of(const Input& input, const MovingObjects& objects, cons
       header.objects.push_back({{i}, object.options, {}, {}, elsewhere});
       continue;
     }
-    header.objects.push_back(recorded_object({i}, object));
+    header.objects.push_back(recorded_object({i}, object, input.simulation.border));
   }
   return header;
 }

@@ -22,7 +22,7 @@ NodePairList node_pairs_of(const Scene& scene, ObjectNumbers objects) {
 /// `A(9, 2)`, or `S(9, 2)` for a sphere, as in the paper.
 std::string name_of(const OctreeCell& node) {
   return fmt::format("{}({}, {})", node.sphere.empty() ? 'A' : 'S',
-                     node.number ? fmt::format("{}", *node.number) : "?", node.level);
+                     node.number ? fmt::format("{}", *node.number) : "?", node.number_level);
 }
 
 std::string names_of(const NodePairList& list, std::span<const NodePairList::Pair> pairs) {
@@ -72,7 +72,7 @@ void write_node_pairs(JsonWriter& json, const Scene& scene, ObjectNumbers object
   const auto write_node = [&](const OctreeCell* node) {
     json.begin_array();
     node->number ? json.value(*node->number) : json.null();
-    json.value(node->level);
+    json.value(node->number_level);
     json.end_array();
   };
   const auto write_pair = [&](const NodePairList::Pair& pair) {

@@ -19,7 +19,8 @@ using namespace supple;
 using fuzz::check;
 
 constexpr std::array all_methods{BroadPhaseMethod::automatic, BroadPhaseMethod::octree,
-                                 BroadPhaseMethod::grid, BroadPhaseMethod::sweep, BroadPhaseMethod::brute};
+                                 BroadPhaseMethod::grid,      BroadPhaseMethod::sweep,
+                                 BroadPhaseMethod::brute,     BroadPhaseMethod::sweep3};
 constexpr std::size_t most_volumes = 100;
 constexpr int most_steps = 12;
 

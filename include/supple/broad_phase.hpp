@@ -38,6 +38,7 @@ struct BroadPhaseStats {
   /// Volumes that differ from the call before, including new and removed volumes.
   std::uint64_t objects_changed = 0;
   std::uint64_t objects_paired = 0;  ///< objects whose pairs were searched; the pairs of others were kept
+  std::uint64_t exchanges = 0;       ///< of two ends in the sorted lists of sweep3; 0 for other methods
   // Counts of the octree; 0 for other methods.
   std::uint64_t objects_placed = 0;    ///< objects that left or entered regions
   std::uint64_t regions_expanded = 0;  ///< groups of child regions that were created
@@ -95,7 +96,8 @@ class BroadPhase {
   /// - octree: O(c + k), or O(n + k) when c is large or the regions are rebuilt,
   /// - grid: O(n + k) unless many volumes share cells,
   /// - sweep: O(n log n + pairs that overlap along one axis),
-  /// - brute: O(n²).
+  /// - brute: O(n²),
+  /// - sweep3: O(n + k + exchanges of two ends), or as sweep when a volume appears or becomes empty.
   /// A call with at most 2^20 pairs allocates no memory once the buffers are as large as the scene needs.
   std::span<const IndexPair> find_object_pairs(std::span<const Aabb> boxes);
   std::span<const IndexPair> find_object_pairs(std::span<const BoundingSphere> spheres);

@@ -66,8 +66,8 @@ struct ObjectOctreeOptions {
 enum class Descent : std::uint8_t {
   both_sides,  ///< all children of one node with all of the other, with vector instructions
   /// As in the paper's Figure 4: the children of the first node with the second node, then those that collide
-  /// with the children of the second node. `StepStats::boxes_tested` counts these tests. For contacts at
-  /// rest; it is slower and needs `use_comparison_methods`.
+  /// with the children of the second node. `StepStats::boxes_tested` counts only these tests. For
+  /// contacts at rest; it is slower and needs `use_comparison_methods`.
   one_side_first,
 };
 
@@ -87,7 +87,7 @@ RootCube cube_around(Vec3d lowest, Vec3d highest);
 inline constexpr std::uint32_t most_full_levels = 6;
 
 /// Shape of the octree of the scene. The pairs found are the same for all values. Any value but the default
-/// is an `Error` when the broad phase is grid, sweep or brute.
+/// is an `Error` when the broad phase is grid, sweep, brute or sweep3.
 struct SceneOctreeOptions {
   /// Depth at which regions no longer expand, 1 to 20; 0 means 20. Far from the origin the depth is less,
   /// because floats cannot represent finer regions there. It counts levels of eight children for every arity,

@@ -18,7 +18,8 @@ inline constexpr std::array words<ObjectOctreeBuild>{"balanced", "regular", "bot
 template <>
 inline constexpr std::array words<SphereFit>{"vertices", "minimal", "box"};
 template <>
-inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid", "sweep", "brute"};
+inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid",
+                                                    "sweep",     "brute",  "sweep3"};
 template <>
 inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>

@@ -49,8 +49,9 @@ enum class BroadPhaseMethod : std::uint8_t {
   octree,
   /// A hierarchical grid that is rebuilt in each step with changes. Best when many objects change.
   grid,
-  sweep,  ///< sweep and prune along one axis; needs `use_comparison_methods`
-  brute,  ///< every object against every other; needs `use_comparison_methods`
+  sweep,   ///< sweep and prune along one axis; needs `use_comparison_methods`
+  brute,   ///< every object against every other; needs `use_comparison_methods`
+  sweep3,  ///< sweep and prune on three lists that stay sorted (Baraff 1992); needs `use_comparison_methods`
 };
 
 /// Kinds of contacts, a set: `ContactKinds::intersection | ContactKinds::continuous`.

@@ -100,7 +100,8 @@ struct StepStats {
   std::uint64_t object_pairs_tested = 0;  ///< tests of two volumes in the broad phase
   std::uint64_t object_pairs = 0;
   std::uint64_t node_pairs_visited = 0;  ///< pairs of octree nodes in the narrow phase
-  /// Tests of two volumes, of children and in leaves; empty children do not count.
+  /// Tests of two volumes, of children and in leaves; empty children do not count. With
+  /// `Descent::one_side_first` only those of children, because the paper's Figure 4 ends at the leaves.
   std::uint64_t boxes_tested = 0;
   /// Triangle pairs whose boxes overlap and that share no vertex.
   std::uint64_t candidate_pairs = 0;

@@ -107,6 +107,7 @@ struct Description<BroadPhaseStats> {
     count("objects_changed", &Stats::objects_changed, "objects", "Volumes that differ from the call before");
     count("objects_paired", &Stats::objects_paired, "objects",
           "Objects whose pairs were searched; the pairs of the others were kept");
+    count("exchanges", &Stats::exchanges, "ends", "Exchanges of two ends in the sorted lists of sweep3");
     count("objects_placed", &Stats::objects_placed, "objects", "Objects that left or entered regions");
     count("regions_expanded", &Stats::regions_expanded, "groups", "Groups of regions that were created");
     count("regions_reduced", &Stats::regions_reduced, "regions", "Regions that became leaves again");

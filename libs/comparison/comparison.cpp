@@ -20,6 +20,7 @@ OctreeTopology build_other_octree(const PositionsView& positions, std::span<cons
 }
 
 std::unique_ptr<PairSearch> make_pair_search(BroadPhaseMethod method) {
+  if (method == BroadPhaseMethod::sweep3) return std::make_unique<ThreeAxisSweep>();
   return std::make_unique<SweepSearch>(method == BroadPhaseMethod::sweep);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -74,6 +75,47 @@ class SweepSearch final : public PairSearch {
   BoxLanes lanes_;
   std::vector<std::uint64_t> order_;  // `order_key` of the boxes that are not empty
   PairSorter sorter_;
+};
+
+/// Sweep and prune with a sorted list of the ends of all boxes along each axis, as Baraff describes it
+/// ("Dynamic simulation of non-penetrating rigid bodies", 1992). Each step sorts the lists by insertion,
+/// which is fast when the order hardly changes, and only exchanges of two ends begin and end pairs. When a
+/// box appears, disappears or becomes empty, the lists and the pairs are made again.
+class ThreeAxisSweep final : public PairSearch {
+ public:
+  void search(const VolumeStore& volumes, const Parallel& parallel, FoundPairs& found) override;
+
+ private:
+  /// The lower or upper end of a box along one axis.
+  struct End {
+    float value;
+    std::uint32_t slot;
+    bool is_upper;
+    /// Boxes that touch overlap, so lower ends come first.
+    bool operator<(const End& other) const {
+      return value < other.value || (value == other.value && is_upper < other.is_upper);
+    }
+  };
+  /// The list of an axis, and what its last sorting did.
+  struct Axis {
+    std::vector<End> ends;
+    std::vector<IndexPair> begun;
+    std::vector<std::size_t> ended;  // places in `box_pairs_`
+    std::uint64_t exchanges = 0, tests = 0;
+  };
+
+  void start(std::span<const Aabb> boxes);
+  void sort_by_insertion(Axis& axis, int k, std::span<const Aabb> boxes) const;
+  void update_box_pairs();
+  void report(const VolumeStore& volumes, FoundPairs& found) const;
+
+  std::array<Axis, 3> axes_;
+  std::vector<std::uint8_t> is_listed_;  // by slot
+  std::vector<IndexPair> box_pairs_;     // pairs of overlapping boxes, sorted
+  // Scratch memory; `open_` has the boxes that began and did not end yet along the first axis.
+  std::vector<std::uint32_t> open_;
+  std::vector<std::uint8_t> has_ended_;
+  std::vector<IndexPair> begun_, merged_;
 };
 
 /// See `ComparisonMethods`.

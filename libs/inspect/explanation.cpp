@@ -207,10 +207,11 @@ PairExplanation objects_apart(const WorldObject& a, const WorldObject& b, Boundi
 PairExplanation cells_apart(const ObjectPairView& pair, const ChildPair& at, const WorldObject& object_a,
                             const WorldObject& object_b) {
   PairExplanation explanation{.stage = PairStage::octree_volumes};
-  explanation.level_a = cell_level(pair.a, at.node_a);
-  explanation.level_b = cell_level(pair.b, at.node_b);
-  explanation.number_a = cell_number(pair.a, object_a.options.octree.arity, at.node_a, at.child_a);
-  explanation.number_b = cell_number(pair.b, object_b.options.octree.arity, at.node_b, at.child_b);
+  const std::uint32_t arity_a = object_a.options.octree.arity, arity_b = object_b.options.octree.arity;
+  explanation.number_a = cell_number(pair.a, arity_a, at.node_a, at.child_a);
+  explanation.number_b = cell_number(pair.b, arity_b, at.node_b, at.child_b);
+  explanation.level_a = number_level(pair.a, arity_a, at.node_a, explanation.number_a);
+  explanation.level_b = number_level(pair.b, arity_b, at.node_b, explanation.number_b);
   const auto volumes_of = [](const OctreeView& view, std::uint32_t node, int child) -> Volumes {
     return {child_box(view, node, child), child_sphere(view, node, child), child_slabs(view, node, child),
             view.translation};

@@ -35,7 +35,9 @@ class CellReader {
     const OctreeNode& node = view_.nodes[n];
     OctreeCell cell;
     cell.level = cell_level(view_, n);
-    cell.number = cell_number(view_, object_->options.octree.arity, n, child);
+    const std::uint32_t arity = object_->options.octree.arity;
+    cell.number = cell_number(view_, arity, n, child);
+    cell.number_level = number_level(view_, arity, n, cell.number);
     cell.is_leaf = !node.is_inner(child);
     cell.triangle_count = node.size(child);
     cell.box = moved(child_box(view_, n, child), view_.translation);

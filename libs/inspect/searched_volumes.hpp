@@ -65,7 +65,7 @@ inline bool is_one_leaf(const OctreeView& view) {
   return !view.nodes.empty() && view.nodes[0].child_count == 1;
 }
 
-/// The level of the children of a node: k of the paper.
+/// The level of the children of a node.
 inline std::uint32_t cell_level(const OctreeView& view, std::uint32_t node) {
   return is_one_leaf(view) ? 0 : view.nodes[node].level + 1u;
 }
@@ -84,6 +84,15 @@ inline std::optional<std::uint64_t> cell_number(const OctreeView& view, std::uin
   constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
   if (!parent || *parent > (most - arity) / arity) return std::nullopt;
   return arity * *parent + 1 + static_cast<std::uint64_t>(child);
+}
+
+/// `OctreeCell::number_level` of a child with this number: k of the paper.
+inline std::uint32_t number_level(const OctreeView& view, std::uint64_t arity, std::uint32_t node,
+                                  std::optional<std::uint64_t> number) {
+  if (!number) return cell_level(view, node);
+  std::uint32_t level = 0;
+  for (std::uint64_t above = *number; above != 0; above = (above - 1) / arity) ++level;
+  return level;
 }
 
 /// The boxes of a moving face at both ends of the step, not yet grown or moved; empty when it is inert.

@@ -215,7 +215,7 @@ class SameBytes(ContinuousTest):
         expected = self.output("--threads", "1", "--contact-details")
         steps = json.loads(expected)["frames"]
         self.assertGreater(sum(len(s["contacts"]) for s in steps), 100)
-        for arguments in (["--threads", "2"], ["--threads", "5"], ["--broad-phase", "sweep"], ["--broad-phase", "brute"]):
+        for arguments in (["--threads", "2"], ["--threads", "5"], ["--broad-phase", "sweep"], ["--broad-phase", "brute"], ["--broad-phase", "sweep3"]):
             with self.subTest(arguments=arguments):
                 self.assertEqual(self.output(*arguments, "--contact-details"), expected)
 

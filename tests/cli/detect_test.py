@@ -119,6 +119,17 @@ class Json(ProgramTest):
         self.assertRegex(done.out, r"(?m)^ +0 +1 +0   A\(0, 0\) A\(0, 0\)\n +1 +1 +1   A\(8, 1\) A\(0, 0\)$")
         done = self.run_here("detect", "two.obj", "near.obj", "--node-pairs", "1", "0", "--bounding-volume", "sphere", *octree)
         self.assertRegex(done.out, r"S\(0, 0\) S\(8, 1\)")
+        # The octant 8 of the root has two triangles, which are in different octants of its octant 64.
+        self.write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 8 8 8\nv 9 8 8\nv 8 9 8\nv 8 8 8.7\nv 9 8 8.7\nv 8 9 8.7\nf 1 2 3\nf 4 5 6\nf 7 8 9\n")
+        (frame,) = self.detect("two.obj", "near.obj", "--node-pairs", "0", "1", *octree)["frames"]
+        deepest = frame["node_pairs"]["levels"][-1]
+        self.assertEqual(len(frame["node_pairs"]["levels"]), 3)
+        for (h, k), _ in deepest:
+            level, first = 0, 0
+            while h > 8 * first:
+                level, first = level + 1, 8 * first + 1
+            self.assertEqual(k, level)
+            self.assertGreater(k, 2)
         done = self.run_here("detect", "a.obj", "far.obj", "--node-pairs", "0", "1")
         self.assertIn("the broad phase does not report this pair", done.out)
         for wrong, message in (
@@ -204,7 +215,7 @@ class SameBytes(ProgramTest):
     def test_threads_and_broad_phases(self):
         expected = self.output("--threads", "1")
         self.assertIn('"pairs":[[', expected)
-        for arguments in (["--threads", "2"], ["--threads", "5"], ["--broad-phase", "sweep"], ["--broad-phase", "brute"]):
+        for arguments in (["--threads", "2"], ["--threads", "5"], ["--broad-phase", "sweep"], ["--broad-phase", "brute"], ["--broad-phase", "sweep3"]):
             with self.subTest(arguments=arguments):
                 self.assertEqual(self.output(*arguments), expected)
 

@@ -73,7 +73,7 @@ class UsageErrors(ProgramTest):
         for value in ("-1", "inf", "nan", "1e999", "1 ", "x", ""):
             self.expect("detect", "a.obj", "--contacts", "continuous", "--min-separation", value, parts=["--min-separation", f"'{value}'", "from 0 up"])
         self.expect("detect", "a.obj", "--contacts", "continuous", "--undecided", "yes", parts=["--undecided", "report, exact"])
-        self.expect("detect", "a.obj", "--broad-phase", "", parts=["--broad-phase", "automatic, octree, grid, sweep, brute"])
+        self.expect("detect", "a.obj", "--broad-phase", "", parts=["--broad-phase", "automatic, octree, grid, sweep, brute, sweep3"])
         self.expect("detect", "a.obj", "--json", parts=["--json"])
 
     def test_options_that_would_have_no_effect(self):

@@ -37,7 +37,8 @@ std::vector<Method> all_methods() {
                        {},
                        {.build = static_cast<ObjectOctreeBuild>(b)}});
   }
-  for (const BroadPhaseMethod broad_phase : {BroadPhaseMethod::sweep, BroadPhaseMethod::brute})
+  for (const BroadPhaseMethod broad_phase :
+       {BroadPhaseMethod::sweep, BroadPhaseMethod::brute, BroadPhaseMethod::sweep3})
     methods.push_back({std::string("the broad phase ") + word_of(broad_phase), {.broad_phase = broad_phase}});
   methods.push_back({"the descent one_side_first", {.comparison = {.descent = Descent::one_side_first}}});
   methods.push_back({"the lazy refit", {.comparison = {.lazy_refit = true}}});

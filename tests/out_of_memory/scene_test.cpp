@@ -393,7 +393,8 @@ TEST(SceneOutOfMemory, WhereObjectsTouchAndAFilterIsCalled) {
 
 TEST(SceneOutOfMemory, WithEveryBroadPhase) {
   for (const BroadPhaseMethod method :
-       {BroadPhaseMethod::octree, BroadPhaseMethod::grid, BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
+       {BroadPhaseMethod::octree, BroadPhaseMethod::grid, BroadPhaseMethod::sweep, BroadPhaseMethod::brute,
+        BroadPhaseMethod::sweep3}) {
     SCOPED_TRACE(static_cast<int>(method));
     expect_usable_scene({.broad_phase = method, .threads = 1}, joined({adding(), moving(), removing()}));
   }

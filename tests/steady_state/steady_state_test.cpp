@@ -99,6 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Configuration{"BoxesGrid", BoundingVolume::aabb, BroadPhaseMethod::grid, 2000},
                     Configuration{"BoxesOctree", BoundingVolume::aabb, BroadPhaseMethod::octree, 2000},
                     Configuration{"BoxesSweep", BoundingVolume::aabb, BroadPhaseMethod::sweep, 2000},
+                    Configuration{"BoxesSweep3", BoundingVolume::aabb, BroadPhaseMethod::sweep3, 2000},
                     Configuration{"SpheresOctree", BoundingVolume::sphere, BroadPhaseMethod::octree, 2000}),
     [](const auto& configuration) { return configuration.param.name; });
 
@@ -144,8 +145,9 @@ TEST(SteadyStateProximity, NoAllocationsAfterWarmUp) {
 /// Boxes of three kinds that drift; in some steps only a few move, or change their kind.
 TEST(SteadyStateKinds, NoAllocationsAfterWarmUp) {
   constexpr int period = 24, steps = 4 * period;
-  for (const BroadPhaseMethod method : {BroadPhaseMethod::automatic, BroadPhaseMethod::octree,
-                                        BroadPhaseMethod::grid, BroadPhaseMethod::sweep}) {
+  for (const BroadPhaseMethod method :
+       {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
+        BroadPhaseMethod::sweep, BroadPhaseMethod::sweep3}) {
     BroadPhaseOptions options;
     options.method = method;
     options.threads = 1;

@@ -48,7 +48,7 @@ inline std::vector<Configuration> all_configurations() {
   std::vector<Configuration> all{{}};
   std::uint32_t turn = 0;
   for (const auto method : {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
-                            BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
+                            BroadPhaseMethod::sweep, BroadPhaseMethod::brute, BroadPhaseMethod::sweep3}) {
     for (const auto& [volume, fit] : all_enclosing_volumes()) {
       for (const ObjectOctreeOptions& octree : all_octrees()) {
         Configuration& next = all.emplace_back(Configuration{{}, octree});

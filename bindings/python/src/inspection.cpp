@@ -42,6 +42,7 @@ nb::dict cell_of(const OctreeCell& cell) {
   nb::dict dict;
   dict["level"] = cell.level;
   dict["number"] = number_of(cell.number);
+  dict["number_level"] = cell.number_level;
   dict["is_leaf"] = cell.is_leaf;
   dict["triangle_count"] = cell.triangle_count;
   dict["box"] = box_of(cell.box);

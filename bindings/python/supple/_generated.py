@@ -40,7 +40,7 @@ class Descent(enum.IntEnum):
     both_sides = 0
     'all children of one node with all of the other, with vector instructions'
     one_side_first = 1
-    "As in the paper's Figure 4: the children of the first node with the second node, then those that collide with the children of the second node. `StepStats.boxes_tested` counts these tests. For contacts at rest; it is slower and needs `use_comparison_methods`."
+    "As in the paper's Figure 4: the children of the first node with the second node, then those that collide with the children of the second node. `StepStats.boxes_tested` counts only these tests. For contacts at rest; it is slower and needs `use_comparison_methods`."
 
 
 class FeatureKind(enum.IntEnum):
@@ -121,6 +121,8 @@ class BroadPhaseMethod(enum.IntEnum):
     'sweep and prune along one axis; needs `use_comparison_methods`'
     brute = 4
     'every object against every other; needs `use_comparison_methods`'
+    sweep3 = 5
+    'sweep and prune on three lists that stay sorted (Baraff 1992); needs `use_comparison_methods`'
 
 
 class ContactKinds(enum.IntFlag):
@@ -306,7 +308,7 @@ CONTRACTS = {
     'BoundingSphere::empty':
         'See `BoundingSphere::empty` in supple/types.hpp.',
     'BroadPhase::find_object_pairs':
-        'All pairs whose closed volumes overlap, each once, sorted by (a, b). The span lasts until the next call.\n\nThe number of volumes may change between calls: volumes past the end were removed. Empty volumes are in no pair. Coordinates may be infinite. A box with a NaN is empty. A sphere with a NaN overlaps every sphere that is not empty. Spheres are compared in double: rounding may add pairs of spheres that are just apart, but never loses a pair. A call with spheres after a call with boxes, or the reverse, forgets all volumes of the call before.\n\nCost for n volumes, k pairs and c changed volumes: the comparison of volumes is O(n). When no volume changed, this is the whole cost. Otherwise the search is\n- octree: O(c + k), or O(n + k) when c is large or the regions are rebuilt,\n- grid: O(n + k) unless many volumes share cells,\n- sweep: O(n log n + pairs that overlap along one axis),\n- brute: O(n²).\nA call with at most 2^20 pairs allocates no memory once the buffers are as large as the scene needs.',
+        'All pairs whose closed volumes overlap, each once, sorted by (a, b). The span lasts until the next call.\n\nThe number of volumes may change between calls: volumes past the end were removed. Empty volumes are in no pair. Coordinates may be infinite. A box with a NaN is empty. A sphere with a NaN overlaps every sphere that is not empty. Spheres are compared in double: rounding may add pairs of spheres that are just apart, but never loses a pair. A call with spheres after a call with boxes, or the reverse, forgets all volumes of the call before.\n\nCost for n volumes, k pairs and c changed volumes: the comparison of volumes is O(n). When no volume changed, this is the whole cost. Otherwise the search is\n- octree: O(c + k), or O(n + k) when c is large or the regions are rebuilt,\n- grid: O(n + k) unless many volumes share cells,\n- sweep: O(n log n + pairs that overlap along one axis),\n- brute: O(n²),\n- sweep3: O(n + k + exchanges of two ends), or as sweep when a volume appears or becomes empty.\nA call with at most 2^20 pairs allocates no memory once the buffers are as large as the scene needs.',
     'BroadPhase::regions':
         'The regions that the last search used, root first, ascending by number. Empty unless the octree ran. O(regions log regions).',
     'BroadPhase::stats':
@@ -778,7 +780,7 @@ CONTRACTS = {
     'usable_cores':
         'The number of cores that this process may use, at least 1.',
     'use_comparison_methods':
-        'Lets this process use the methods that only serve comparisons with the defaults: `SceneOptions.bounding_volume` other than `aabb`, `ObjectOctreeOptions.build` other than `balanced`, `BroadPhaseMethod.sweep` and `brute`, `Descent.one_side_first`, `colliding_vertices` and `lazy_refit`. Without this call, `Scene`, `Scene.add` and `BroadPhase` throw `Error` for these options. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
+        'Lets this process use the methods that only serve comparisons with the defaults: `SceneOptions.bounding_volume` other than `aabb`, `ObjectOctreeOptions.build` other than `balanced`, `BroadPhaseMethod.sweep`, `brute` and `sweep3`, `Descent.one_side_first`, `colliding_vertices` and `lazy_refit`. Without this call, `Scene`, `Scene.add` and `BroadPhase` throw `Error` for these options. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
     'use_manifolds':
         'Lets the scenes of this process find curves and make manifolds: `curves` and `manifolds` of `SceneOptions` and of `DetectRequest`. Without this call, `Scene.detect` and `Scene.search` throw `Error` for them. Call it before; repeated calls and calls from several threads are allowed.\n\nIt needs a call because a linker leaves out what nothing names.',
     'valid_utf8':

@@ -147,7 +147,7 @@ class SceneOptions(SceneOctreeOptions, ImpactOptions, ComparisonOptions, total=F
 
     bounding_volume: BoundingVolume | Literal['aabb', 'sphere', 'obb', 'kdop14', 'kdop18', 'kdop26']
     'Shape that encloses the objects and the nodes of their octrees'
-    broad_phase: BroadPhaseMethod | Literal['automatic', 'octree', 'grid', 'sweep', 'brute']
+    broad_phase: BroadPhaseMethod | Literal['automatic', 'octree', 'grid', 'sweep', 'brute', 'sweep3']
     'How object pairs are found; all methods find the same pairs'
     scene_octree: SceneOctreeOptions
     'Shape of the scene octree'
@@ -183,7 +183,7 @@ class StepOptions(TypedDict, total=False):
 class BroadPhaseOptions(SceneOctreeOptions, total=False):
     'Options as keywords.'
 
-    method: BroadPhaseMethod | Literal['automatic', 'octree', 'grid', 'sweep', 'brute']
+    method: BroadPhaseMethod | Literal['automatic', 'octree', 'grid', 'sweep', 'brute', 'sweep3']
     'How overlapping pairs are found'
     scene_octree: SceneOctreeOptions
     'Shape of the scene octree'
@@ -307,7 +307,7 @@ class SimulationOptions(SceneOctreeOptions, ImpactOptions, ComparisonOptions, to
     'Response to contacts'
     bounding_volume: BoundingVolume | Literal['aabb', 'sphere', 'obb', 'kdop14', 'kdop18', 'kdop26']
     'Shape that encloses the objects and the nodes of their octrees'
-    broad_phase: BroadPhaseMethod | Literal['automatic', 'octree', 'grid', 'sweep', 'brute']
+    broad_phase: BroadPhaseMethod | Literal['automatic', 'octree', 'grid', 'sweep', 'brute', 'sweep3']
     'How object pairs are found; all methods find the same pairs'
     contacts: Kinds
     'Contacts to find: pairs of triangles that intersect (intersection); vertices and faces, and pairs of edges, that touch on their paths from the frame before (continuous); pairs within the margins of their objects (proximity); vertices inside solid objects, contained parts and curves of intersection (penetration, which includes intersection); several of these with commas between them; or none. Bodies that already cut through each other at the start of the paths are found by intersection, not by continuous'

@@ -266,7 +266,7 @@ def test_the_broad_phase_alone(rng):
         for j in range(i + 1, 300)
         if (boxes[i, 0] <= boxes[j, 1]).all() and (boxes[j, 0] <= boxes[i, 1]).all()
     }
-    for method in ("octree", "grid", "sweep", "brute"):
+    for method in ("octree", "grid", "sweep", "brute", "sweep3"):
         assert {tuple(pair) for pair in supple.BroadPhase(method=method).find(boxes).tolist()} == wanted
     with pytest.raises(supple.Error, match="float32"):
         supple.BroadPhase().find(low)

@@ -58,6 +58,15 @@ class FarthestVertex {
     squared_distance_ = 0;
   }
 
+  /// Without spheres of nodes that skip vertices, one loop reads each position once and in order.
+  void search_object() {
+    if (octree_.are_nodes_current)
+      search_node(0);
+    else
+      for_each_used_vertex(octree_.vertices, octree_.unused_vertices,
+                           [&](std::uint32_t vertex) { consider(vertex); });
+  }
+
   void search_child(std::uint32_t n, int child) {
     const OctreeNode& node = octree_.nodes[n];
     if (node.is_inner(child) && octree_.are_nodes_current)
@@ -66,11 +75,18 @@ class FarthestVertex {
       for_each_vertex(octree_, n, child, [&](std::uint32_t vertex) { consider(vertex); });
   }
 
+  Vec3d position() const { return position_; }
+  double squared_distance() const { return squared_distance_; }
+
+  /// The sphere around the centre that reaches the vertex.
+  BoundingSphere sphere() const {
+    // The factor covers the rounding of the sum and the root; the addend covers squares that underflow.
+    return {center_,
+            round_up(std::sqrt(squared_distance_) * (1 + 0x1p-50) + std::numeric_limits<float>::min())};
+  }
+
+ private:
   void search_node(std::uint32_t n) {
-    if (!octree_.are_nodes_current) {
-      for (int child = 0; child < octree_.nodes[n].child_count; ++child) search_child(n, child);
-      return;
-    }
     struct Reach {
       double most;  ///< bound of the distance
       std::size_t child;
@@ -92,17 +108,6 @@ class FarthestVertex {
     }
   }
 
-  Vec3d position() const { return position_; }
-  double squared_distance() const { return squared_distance_; }
-
-  /// The sphere around the centre that reaches the vertex.
-  BoundingSphere sphere() const {
-    // The factor covers the rounding of the sum and the root; the addend covers squares that underflow.
-    return {center_,
-            round_up(std::sqrt(squared_distance_) * (1 + 0x1p-50) + std::numeric_limits<float>::min())};
-  }
-
- private:
   void consider(std::uint32_t vertex) {
     const Vec3d p = octree_.vertices[vertex];
     const double squared_distance = squared_norm(p - from_);
@@ -227,7 +232,7 @@ class Spheres final : public NodeVolumes {
 
   void refit_object(const RefittedOctree& octree, const Aabb& box) override {
     object_sphere_ = fitted_sphere(fit_, FarthestVertex(octree, spheres_), box,
-                                   [](FarthestVertex& farthest) { farthest.search_node(0); });
+                                   [](FarthestVertex& farthest) { farthest.search_object(); });
   }
 
   void clear_apart(std::span<const NodePair> pairs, const NodeVolumes& b, const RelativePlacement& placement,

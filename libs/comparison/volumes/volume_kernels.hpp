@@ -28,6 +28,10 @@ constexpr std::size_t floats_per_slab = 2 * std::size_t{node_width};
 /// a leaf once.
 template <class Visit>
 void for_each_vertex(const RefittedOctree& octree, std::uint32_t n, int child, const Visit& visit) {
+  if (!octree.child_vertices.empty()) {
+    std::ranges::for_each(octree.child_vertices[static_cast<std::size_t>(child)], visit);
+    return;
+  }
   const OctreeNode& node = octree.nodes[n];
   if (octree.inert.empty() && !node.is_inner(child)) {
     const std::uint32_t* const first = octree.leaves.first + std::size_t{n} * node_width + child;
@@ -37,6 +41,19 @@ void for_each_vertex(const RefittedOctree& octree, std::uint32_t n, int child, c
   for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
     if (octree.inert.empty() || octree.inert[t] == 0) std::ranges::for_each(octree.triangles[t], visit);
   }
+}
+
+/// Calls `visit(vertex)` once for each vertex that a triangle uses, in the order of the positions in memory.
+template <class Visit>
+void for_each_used_vertex(const VertexBuffer& vertices, std::span<const std::uint32_t> unused_vertices,
+                          const Visit& visit) {
+  const auto count = static_cast<std::uint32_t>(vertices.size());
+  std::uint32_t vertex = 0;
+  for (const std::uint32_t unused : unused_vertices) {
+    for (; vertex < unused; ++vertex) visit(vertex);
+    ++vertex;
+  }
+  for (; vertex < count; ++vertex) visit(vertex);
 }
 
 /// The oriented boxes of the children of a node, one array per number.

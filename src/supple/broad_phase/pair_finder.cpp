@@ -77,11 +77,12 @@ std::unique_ptr<PairSearch> make_search(BroadPhaseMethod method, BoundingVolume 
       return std::make_unique<GridSearch>();
     case BroadPhaseMethod::sweep:
     case BroadPhaseMethod::brute:
+    case BroadPhaseMethod::sweep3:
       refuse(options, word_of(method));
       return comparison_methods(std::string("the broad phase ") + word_of(method)).pair_search(method);
   }
   fail("broad phase: method " + std::to_string(static_cast<int>(method)) +
-       " is unknown; use automatic, octree, grid, sweep or brute");
+       " is unknown; use automatic, octree, grid, sweep, brute or sweep3");
 }
 
 }  // namespace

@@ -222,8 +222,10 @@ class Traversal {
         b{pair.b.arrays, pair.b.boxes, pair.b.leaf_vertices};
     for (std::size_t i = 0; i < leaves.size(); i += step) {
       const auto part = leaves.subspan(i, std::min(step, leaves.size() - i));
-      stats.volumes_tested +=
+      const std::uint64_t tests =
           find_triangle_box_pairs(part, a, b, pair.placement, pair.same_object, leaf_boxes_, candidates_);
+      // The descent of Figure 4 ends at two leaves.
+      if (pair.a.descent == Descent::both_sides) stats.volumes_tested += tests;
       if (candidates_.size() >= candidate_batch || i + step >= leaves.size()) {
         stats.candidate_pairs += candidates_.size();
         if (candidates_.size() > 0) sink(candidates_.pairs());

@@ -34,7 +34,7 @@ struct ComparisonMethods {
   /// For all builds but the balanced one.
   OctreeTopology (*octree)(const PositionsView& positions, std::span<const Triangle> triangles,
                            std::span<const Vec3d> centers, const ObjectOctreeOptions& options);
-  /// For `sweep` and `brute`.
+  /// For `sweep`, `brute` and `sweep3`.
   std::unique_ptr<PairSearch> (*pair_search)(BroadPhaseMethod method);
   /// For `Descent::one_side_first`: the children of two nodes that overlap, as `overlap_masks`. Adds the
   /// number of tests.

@@ -119,7 +119,8 @@ class ObjectOctree {
   void mark_with_ancestors(std::uint32_t node);
   RefittedOctree refitted(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                           bool are_nodes_current = true) const {
-    return {nodes_, boxes_.data(), triangles_, leaf_vertices(), vertices, inert, are_nodes_current};
+    return {nodes_,   boxes_.data(), triangles_,       leaf_vertices(),
+            vertices, inert,         unused_vertices_, are_nodes_current};
   }
 
   std::vector<OctreeNode> nodes_;
@@ -138,6 +139,9 @@ class ObjectOctree {
   std::vector<std::uint32_t> first_node_, nodes_of_vertices_, stale_nodes_;
   std::vector<std::uint8_t> is_stale_;
   std::vector<std::uint8_t> is_current_;  // by node, since `LazyRefit::refit_object`
+  // Scratch memory of `LazyRefit::refit_children`: the vertices of the children, and a byte for each vertex.
+  std::vector<std::uint32_t> child_vertices_;
+  std::vector<std::uint8_t> is_listed_;
   ObjectOctreeOptions options_;
   BoundingVolume bounding_volume_;
   SphereFit sphere_fit_;

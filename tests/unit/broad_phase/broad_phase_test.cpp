@@ -21,7 +21,7 @@ using test::infinity;
 using test::Random;
 
 const char* name_of(BroadPhaseMethod method) {
-  constexpr std::array names{"automatic", "octree", "grid", "sweep", "brute"};
+  constexpr std::array names{"automatic", "octree", "grid", "sweep", "brute", "sweep3"};
   return names[static_cast<std::size_t>(method)];
 }
 

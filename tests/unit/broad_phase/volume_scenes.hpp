@@ -31,8 +31,8 @@ class Random : public RandomNumbers {
 };
 
 inline constexpr std::array all_methods{BroadPhaseMethod::automatic, BroadPhaseMethod::octree,
-                                        BroadPhaseMethod::grid, BroadPhaseMethod::sweep,
-                                        BroadPhaseMethod::brute};
+                                        BroadPhaseMethod::grid,      BroadPhaseMethod::sweep,
+                                        BroadPhaseMethod::brute,     BroadPhaseMethod::sweep3};
 
 /// The independent reference: tests every pair of volumes.
 template <class Volume>

@@ -214,6 +214,53 @@ TEST(LazyRefit, TakesBoundsThatTheMotionFound) {
   }
 }
 
+/// A mesh in which each third vertex, also the first and the last, is far away and of no triangle.
+TriangleMesh with_unused_vertices(const TriangleMesh& mesh) {
+  const auto place_of = [](std::uint32_t vertex) { return vertex + vertex / 2 + 1; };
+  const auto count = static_cast<std::uint32_t>(mesh.positions.size());
+  TriangleMesh result{mesh.name, std::vector<Vec3d>(place_of(count - 1) + 2, Vec3d{50, 50, 50}),
+                      mesh.triangles};
+  for (std::uint32_t v = 0; v < count; ++v) result.positions[place_of(v)] = mesh.positions[v];
+  for (Triangle& triangle : result.triangles) {
+    for (std::uint32_t& vertex : triangle) vertex = place_of(vertex);
+  }
+  return result;
+}
+
+TEST(LazyRefit, GivesAnObjectTheVolumesOfAFullRefit) {
+  for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
+    const SceneOptions options{.bounding_volume = volume, .threads = 1};
+    Scene full(options), lazily(lazy(options));
+    const std::vector<TriangleMesh> meshes{make_icosphere(3),
+                                           with_unused_vertices(random_soup(90, 1, 0.1, 4)),
+                                           make_model("pawn"), with_unused_vertices(make_model("fish"))};
+    for (Scene* const scene : {&full, &lazily}) {
+      for (const TriangleMesh& mesh : meshes) scene->add(mesh, {.octree = octree_of_2007()});
+    }
+    for (int step = 0; step < 4; ++step) {
+      const std::vector<ObjectId> ids = full.objects();
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        std::vector<Vec3d> positions = meshes[i].positions;
+        for (Vec3d& p : positions)
+          p = {p.x, p.y * (1 + 0.2 * step * p.x), p.z + 7.0 * static_cast<double>(i)};
+        for (Scene* const scene : {&full, &lazily}) scene->set_positions(ids[i], positions);
+      }
+      full.detect();
+      lazily.detect();
+      for (const ObjectId id : ids) {
+        const OctreeCell expected = SceneInspector(full).cells(id, 0)[0];
+        const OctreeCell found = SceneInspector(lazily).cells(id, 0)[0];
+        EXPECT_EQ(found.sphere.radius, expected.sphere.radius);
+        for (int axis = 0; axis < 3; ++axis) {
+          EXPECT_EQ(found.sphere.center[axis], expected.sphere.center[axis]);
+          EXPECT_EQ(SceneInspector(lazily).bounds(id).min[axis], SceneInspector(full).bounds(id).min[axis]);
+          EXPECT_EQ(SceneInspector(lazily).bounds(id).max[axis], SceneInspector(full).bounds(id).max[axis]);
+        }
+      }
+    }
+  }
+}
+
 TEST(LazyRefit, NeedsBoxesOrSpheres) {
   SceneOptions options = lazy({.bounding_volume = BoundingVolume::obb});
   EXPECT_THROW(Scene{options}, Error);
@@ -221,7 +268,7 @@ TEST(LazyRefit, NeedsBoxesOrSpheres) {
   EXPECT_THROW(Scene{options}, Error);
 }
 
-/// Counts the tests of Figure 4, and those of the triangles in the leaves, on the cells of the inspector.
+/// Counts the tests of Figure 4 on the cells of the inspector.
 std::uint64_t tests_of_figure_4(const Scene& scene, ObjectId a, ObjectId b) {
   const SceneInspector inspector(scene);
   const NodePairList list = inspector.node_pairs(a, b);
@@ -238,11 +285,7 @@ std::uint64_t tests_of_figure_4(const Scene& scene, ObjectId a, ObjectId b) {
   std::uint64_t tests = 0;
   for (const NodePairList::Pair& pair : list.pairs) {
     const OctreeCell &cell_a = list.nodes_a[pair.a], &cell_b = list.nodes_b[pair.b];
-    if (cell_a.is_leaf && cell_b.is_leaf) {
-      // The triangle of each leaf with the box of the other leaf, and the boxes of both triangles.
-      tests += 3;
-      continue;
-    }
+    if (cell_a.is_leaf && cell_b.is_leaf) continue;
     const auto of_a = children(a, cell_a, 8), of_b = children(b, cell_b, 8);
     if (cell_a.is_leaf || cell_b.is_leaf) {
       tests += std::max(of_a.size(), of_b.size());
@@ -261,13 +304,21 @@ std::uint64_t tests_of_figure_4(const Scene& scene, ObjectId a, ObjectId b) {
 TEST(OneSideFirst, CountsTheTestsOfFigure4) {
   SceneOptions options{.contacts = ContactKinds::none, .threads = 1};
   options.comparison.descent = Descent::one_side_first;
-  Scene scene(options);
-  const ObjectOptions object{.octree = octree_of_2007()};
-  const ObjectId a = scene.add(random_soup(80, 1, 0.3, 1), object);
-  const ObjectId b = scene.add(random_soup(60, 1, 0.3, 2), object);
-  const std::uint64_t tests = scene.detect().stats.boxes_tested;
-  EXPECT_EQ(tests, tests_of_figure_4(scene, a, b));
-  EXPECT_GT(tests, 500u);
+  for (const auto& [count_a, count_b] : {std::pair(80u, 60u), {1u, 60u}, {60u, 1u}, {1u, 1u}}) {
+    Scene scene(options);
+    const ObjectOptions object{.octree = octree_of_2007()};
+    const ObjectId a = scene.add(random_soup(count_a, 1, 0.3, 1), object);
+    const ObjectId b = scene.add(random_soup(count_b, 1, 0.3, 2), object);
+    const DetectResult& result = scene.detect();
+    EXPECT_EQ(result.stats.boxes_tested, tests_of_figure_4(scene, a, b));
+    if (count_a == 80) {
+      EXPECT_GT(result.stats.boxes_tested, 500u);
+    }
+    if (count_a + count_b == 61) {
+      EXPECT_EQ(result.object_pairs.size(), 1u);
+      EXPECT_GT(result.stats.boxes_tested, 0u);
+    }
+  }
 }
 
 TEST(MethodOf2007, HasTheRootAndItsChildrenAlways) {

@@ -125,6 +125,38 @@ TEST(NodePairs, AreThoseOfARecursiveDescent) {
   }
 }
 
+/// The levels of h begin at 0, 1, m + 1, m² + m + 1 and so on.
+std::uint32_t level_of(std::uint64_t number, std::uint64_t arity) {
+  std::uint32_t level = 0;
+  for (std::uint64_t first = 0, count = 1; number >= first + count; ++level) {
+    first += count;
+    count *= arity;
+  }
+  return level;
+}
+
+TEST(NodePairs, NamesHaveTheLevelOfTheNumber) {
+  for (const ObjectOctreeOptions& octree : all_octrees()) {
+    Scene scene;
+    ObjectOptions options{.octree = octree};
+    options.octree.leaf_size = 1;
+    // Most triangles are near one corner, so nodes of a regular octree shrink to octants.
+    TriangleMesh mesh = random_soup(40, 1e-3, 1e-4, 8);
+    for (Vec3d& p : mesh.positions) p += Vec3d{1, 1, 1};
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{0.01, 0, 0}, Vec3d{0, 0.01, 0}}) mesh.positions.push_back(p);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    const ObjectId a = scene.add(mesh, options), b = scene.add(mesh, options);
+    scene.detect();
+    std::size_t deeper = 0;
+    for (const OctreeCell& cell : SceneInspector(scene).node_pairs(a, b).nodes_a) {
+      EXPECT_EQ(cell.number_level, level_of(cell.number.value(), octree.arity));
+      deeper += cell.number_level > cell.level ? 1 : 0;
+    }
+    EXPECT_EQ(deeper > 0, octree.build == ObjectOctreeBuild::regular);
+  }
+}
+
 TEST(NodePairs, OfTheObjectsInTheOtherOrder) {
   Scene scene;
   const ObjectOptions options{.octree = {.leaf_size = 2}};

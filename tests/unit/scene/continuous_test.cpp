@@ -95,7 +95,7 @@ TEST_P(ContinuousScenes, EqualAlgebraInEveryConfiguration) {
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
     for (const BroadPhaseMethod method :
          {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
-          BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
+          BroadPhaseMethod::sweep, BroadPhaseMethod::brute, BroadPhaseMethod::sweep3}) {
       for (const std::uint32_t threads : {1u, 2u, 5u}) {
         SceneOptions options = continuous(0, threads);
         options.bounding_volume = volume;

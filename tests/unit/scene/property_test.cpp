@@ -45,7 +45,7 @@ TEST_P(SceneProperties, AnyNumberOfThreadsGivesTheSameBits) {
     ASSERT_EQ(differences(reference), "") << "seed " << seed;
     for (const BroadPhaseMethod method :
          {BroadPhaseMethod::automatic, BroadPhaseMethod::octree, BroadPhaseMethod::grid,
-          BroadPhaseMethod::sweep, BroadPhaseMethod::brute}) {
+          BroadPhaseMethod::sweep, BroadPhaseMethod::brute, BroadPhaseMethod::sweep3}) {
       for (const std::uint32_t threads : {1u, 2u, 3u, 8u}) {
         Scene scene = scene_of(meshes, {.broad_phase = method, .threads = threads});
         ASSERT_EQ(hash_of(scene.detect()), hash) << threads;

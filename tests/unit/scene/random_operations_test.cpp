@@ -163,12 +163,13 @@ TEST_P(RandomOperations, EveryStepEqualsBruteForce) {
 }
 
 std::string configuration_name(const testing::TestParamInfo<RandomOperations::ParamType>& info) {
-  constexpr std::array methods{"Automatic", "Octree", "Grid", "Sweep", "Brute"};
+  constexpr std::array methods{"Automatic", "Octree", "Grid", "Sweep", "Brute", "Sweep3"};
   return name_of(std::get<0>(info.param)) + methods[static_cast<std::size_t>(std::get<1>(info.param).value)];
 }
 
 constexpr std::array all_methods{BroadPhaseMethod::automatic, BroadPhaseMethod::octree,
-                                 BroadPhaseMethod::grid, BroadPhaseMethod::sweep, BroadPhaseMethod::brute};
+                                 BroadPhaseMethod::grid,      BroadPhaseMethod::sweep,
+                                 BroadPhaseMethod::brute,     BroadPhaseMethod::sweep3};
 INSTANTIATE_TEST_SUITE_P(Configurations, RandomOperations,
                          testing::Combine(testing::Values(BoundingVolume::aabb, BoundingVolume::sphere),
                                           testing::ValuesIn(option_words(all_methods))),

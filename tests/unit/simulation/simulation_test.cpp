@@ -433,6 +433,7 @@ TEST(Simulation, GivesTheSameContactsByAnyBroadPhase) {
   EXPECT_EQ(run(BroadPhaseMethod::automatic, BoundingVolume::aabb), expected);
   EXPECT_EQ(run(BroadPhaseMethod::grid, BoundingVolume::aabb), expected);
   EXPECT_EQ(run(BroadPhaseMethod::sweep, BoundingVolume::aabb), expected);
+  EXPECT_EQ(run(BroadPhaseMethod::sweep3, BoundingVolume::aabb), expected);
   EXPECT_EQ(run(BroadPhaseMethod::octree, BoundingVolume::sphere), expected);
 }
 

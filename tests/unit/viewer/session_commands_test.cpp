@@ -117,7 +117,7 @@ TEST(ViewerCommands, FailuresNameTheCommandTheValueAndWhatIsAllowed) {
   EXPECT_EQ(failure.json["id"], 3);
   EXPECT_EQ(failure.json["message"], "speed: factor is 11; it must be a number from 0 to 10");
   EXPECT_EQ(page.failure(R"({"do": "set", "broad_phase": "fast"})"),
-            "set: broad_phase is \"fast\"; it must be one of automatic, octree, grid, sweep, brute");
+            "set: broad_phase is \"fast\"; it must be one of automatic, octree, grid, sweep, brute, sweep3");
   EXPECT_EQ(page.failure(R"({"do": "grab", "object": 7, "vertex": 0})"),
             "grab: there is no object 7; there are 3, numbered from 0");
   EXPECT_EQ(page.failure(R"({"do": "pause", "now": true})"),

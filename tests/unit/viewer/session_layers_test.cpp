@@ -217,7 +217,7 @@ TEST(ViewerLayers, ListsTheNodePairsByLevel) {
     EXPECT_EQ(levels[level]["pairs"], pairs.size());
     const OctreeCell &a = list.nodes_a[pairs[0].a], &b = list.nodes_b[pairs[0].b];
     const auto name = [](const OctreeCell& cell) {
-      return "A(" + std::to_string(*cell.number) + ", " + std::to_string(cell.level) + ")";
+      return "A(" + std::to_string(*cell.number) + ", " + std::to_string(cell.number_level) + ")";
     };
     EXPECT_EQ(levels[level]["names"][0], Json::array({name(a), name(b)}));
     EXPECT_EQ(levels[level]["names"].size(), std::min<std::size_t>(pairs.size(), 100));
@@ -232,7 +232,7 @@ TEST(ViewerLayers, ListsTheNodePairsByLevel) {
   EXPECT_EQ(page.ask({{"do", "read"}, {"object", 0}})["regions"], regions);
   const OctreeCell leaf = SceneInspector(simulation.scene()).leaf({0, 0}, 17);
   EXPECT_EQ(page.ask({{"do", "read"}, {"object", 0}, {"triangle", 17}})["leaf"],
-            "A(" + std::to_string(*leaf.number) + ", " + std::to_string(leaf.level) + ")");
+            "A(" + std::to_string(*leaf.number) + ", " + std::to_string(leaf.number_level) + ")");
 }
 
 /// The colliding vertices equal those of a scene that is created with this option.

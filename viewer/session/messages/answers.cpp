@@ -73,7 +73,7 @@ std::uint64_t contact_count(const DetectResult& result, std::uint32_t object) {
 
 /// `A(9, 2)`, or `S(9, 2)` for a sphere, as in the paper.
 std::string name_of(const OctreeCell& node) {
-  return node_name(!node.sphere.empty(), node.number, node.level);
+  return node_name(!node.sphere.empty(), node.number, node.number_level);
 }
 
 }  // namespace

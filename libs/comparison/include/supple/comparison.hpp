@@ -6,9 +6,9 @@ namespace supple {
 
 /// Lets this process use the methods that only serve comparisons with the defaults:
 /// `SceneOptions::bounding_volume` other than `aabb`, `ObjectOctreeOptions::build` other than `balanced`,
-/// `BroadPhaseMethod::sweep` and `brute`, `Descent::one_side_first`, `colliding_vertices` and `lazy_refit`.
-/// Without this call, `Scene`, `Scene::add` and `BroadPhase` throw `Error` for these options. Call it before;
-/// repeated calls and calls from several threads are allowed.
+/// `BroadPhaseMethod::sweep`, `brute` and `sweep3`, `Descent::one_side_first`, `colliding_vertices` and
+/// `lazy_refit`. Without this call, `Scene`, `Scene::add` and `BroadPhase` throw `Error` for these options.
+/// Call it before; repeated calls and calls from several threads are allowed.
 ///
 /// It needs a call because a linker leaves out what nothing names.
 void use_comparison_methods();

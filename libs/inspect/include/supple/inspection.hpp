@@ -17,14 +17,16 @@ class Scene;
 
 /// A cell of an object's octree: a node of the paper, A(h, k).
 struct OctreeCell {
-  std::uint32_t level = 0;  ///< k; the root is 0
+  std::uint32_t level = 0;  ///< nodes above it; the root is 0
   /// h: the root is 0, and the children of h are mh + 1 … mh + m in a tree of arity m. In a regular octree
   /// they are the octants of the cube around the centres of the triangles in the rest pose, also those
-  /// without triangles: bit 0 of a child is the upper half in x, bit 1 in y, bit 2 in z. A node whose
-  /// triangles are all in one octant shrinks to it, so h may be that of a deeper level than `level`. In other
-  /// trees, the children that exist have the first numbers. Empty when the number does not fit into 64 bits,
-  /// which is possible below level 20 of an octree (31 with arity 4, 62 with arity 2).
+  /// without triangles: bit 0 of a child is the upper half in x, bit 1 in y, bit 2 in z. In other trees, the
+  /// children that exist have the first numbers. Empty when the number does not fit into 64 bits, which is
+  /// possible below level 20 of an octree (31 with arity 4, 62 with arity 2).
   std::optional<std::uint64_t> number = 0;
+  /// k: the level of h. It is more than `level` below a node of a regular octree whose triangles are all in
+  /// one octant: the node shrinks to this octant. It equals `level` when there is no number.
+  std::uint32_t number_level = 0;
   bool is_leaf = true;
   std::uint32_t triangle_count = 0;
   Aabb box{};               ///< encloses the triangles at their present positions
@@ -51,8 +53,8 @@ struct CandidateList {
 /// The descent of the narrow phase into the octrees of two objects, as a list of pairs by level (Figure 4 of
 /// the paper). Pair (A(h, k) of object a, A(h, k) of object b) is in the list when the volumes of both nodes
 /// overlap, and so do those of all their ancestors. The descent takes one level of both octrees at a time. A
-/// leaf stays while the other side descends, so the nodes of a pair of level k are at level k, or one is a
-/// leaf above it.
+/// leaf stays while the other side descends, so the nodes of a pair of a level have this
+/// `OctreeCell::level`, or one is a leaf above it.
 struct NodePairList {
   /// Two nodes that collide, one of each object.
   struct Pair {
@@ -102,8 +104,8 @@ struct PairExplanation {
   /// Not empty when oriented boxes or k-DOPs are apart, although their boxes overlap; see
   /// `OctreeCell::slabs`.
   std::vector<Slab> slabs_a{}, slabs_b{};
-  std::uint32_t level_a = 0, level_b = 0;  ///< levels of the octree cells
-  /// Their numbers, as in `OctreeCell::number`.
+  /// The names of the octree cells: `OctreeCell::number_level` and `number`.
+  std::uint32_t level_a = 0, level_b = 0;
   std::optional<std::uint64_t> number_a = 0, number_b = 0;
   /// At `exact_test`: the unit direction from a to b between the closest points of the triangles, and their
   /// distance, both rounded as in `ElementDistance`.

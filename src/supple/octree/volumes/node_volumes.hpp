@@ -26,9 +26,12 @@ struct RefittedOctree {
   std::span<const Triangle> triangles;
   LeafVertexArrays leaves;
   const VertexBuffer& vertices;
-  std::span<const std::uint8_t> inert;  ///< a byte per triangle, or empty
+  std::span<const std::uint8_t> inert;             ///< a byte per triangle, or empty
+  std::span<const std::uint32_t> unused_vertices;  ///< of no triangle; ascending
   /// False: the volumes of deeper nodes are out of date.
   bool are_nodes_current = true;
+  /// Then, for `NodeVolumes::refit`: the vertices of each child of the node, each once.
+  std::span<const std::span<const std::uint32_t>> child_vertices{};
 };
 
 /// Volumes other than boxes of the nodes of one octree. The search tests spheres instead of boxes, and the
