@@ -42,6 +42,10 @@ const LONG = [
   "crowd: one is picked, and its row comes into sight", "layers: another bounding volume shows", "live: plots hold every step",
   "inside: the resting pointer shows the value of the field", "follow: buttons stay while values change", "follow: pins have each step",
   "capture: frames of a page without a program", "history: the memory of the past is bounded", "capture: a program that ends meanwhile",
+  "live: settings keep the state, or say that they restart", "narrow: everything is reached at 800 and 390 pixels by touch",
+  "page: a program that is started again", "page: views survive a reload", "live: events of both phases are counted",
+  "live: the total of the plots has the motion", "marks: pairs are sorted by each column", "capture: a recording is saved up to a frame",
+  "marks: dense marks thin out", "history: the timeline is reachable at every width", "capture: every third step is saved", "live: integrators change",
 ];
 
 const USAGE = "usage: node e2e/run.mjs [--firefox] [--slow] [--size 1440|800|390] [--theme dark|light] PATH/TO/supple [WORDS OF A TEST'S NAME]";
