@@ -13,7 +13,8 @@ import sys
 from contest_targets import growth_points, judged
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "experiments"))
-from report import bar_plot, line_plot, page, rounded, table  # noqa: E402
+from judge.pages import bar_plot, line_plot, page, table  # noqa: E402
+from judge.text import rounded  # noqa: E402
 
 COLORS = {"Supple": "#0077bb", "Embree": "#ee7733", "CGAL": "#009988", "FCL": "#cc3311", "Bullet": "#9467bd",
           "ODE": "#b8860b", "baseline sweep": "#888888", "baseline grid": "#555577"}

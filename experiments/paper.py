@@ -3,24 +3,26 @@
 
 usage: paper.py [--quick] [--program PROGRAM] [--output FOLDER]
 
-Runs `supple experiment NAME --output FOLDER/NAME` for each experiment that has no report there yet; an
-interrupted table1 goes on. Then writes FOLDER/paper.html, which needs no other file, and figures 3 and 5 as
-videos, FOLDER/figure3.webp and FOLDER/figure5.webp. --quick runs the quick versions. Needs matplotlib, which
-Debian has as python3-matplotlib.
+Runs `supple experiment NAME --output FOLDER/NAME` for each experiment that has no page there yet; what is
+interrupted goes on, where the experiment can. Then writes FOLDER/paper.html, which needs no other file, and figures 3 and 5 as
+videos, FOLDER/figure3.webp and FOLDER/figure5.webp. --quick runs the quick versions. Needs matplotlib and
+scipy, which Debian has as python3-matplotlib and python3-scipy.
 """
 
 import argparse
 import base64
 import io
-import json
 import pathlib
 import subprocess
 import sys
 
-from report import COLORS, escaped, html_of_claim, page, plots_of, rows_of, table_of, try_debians_python
+from judge.pages import COLORS, escaped, page, table, try_debians_python
 
 try:
     import numpy as np
+
+    from judge import claims, report
+    from judge.tables import Tables
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
@@ -37,12 +39,12 @@ STYLE = "img { max-width: 100%; height: auto; background: #fff; } .figures img {
 def run_experiments(program, output, quick):
     for name in EXPERIMENTS:
         folder = output / name
-        if (folder / f"{name}_report.json").exists():
+        if (folder / f"{name}.html").exists():
             print(f"{folder}: complete; remove it to run the experiment again", file=sys.stderr)
             continue
         command = [program, "experiment", name, "--output", str(folder)]
         command += ["--quick"] if quick else []
-        command += ["--resume"] if (folder / "table1_options.csv").exists() else []
+        command += ["--resume"] if name in ("table1", "sensitivity") and folder.exists() else []
         print(" ".join(command), file=sys.stderr)
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
@@ -54,8 +56,8 @@ class Frames:
     """The data of `supple experiment figures`, by frame."""
 
     def __init__(self, folder):
-        self.report = json.loads((folder / "figures_report.json").read_text())
-        parameters = self.report["parameters"]
+        tables = Tables(folder)
+        parameters = tables.head("figures_1")
         self.middle = int(parameters["middle"])
         self.pair = [int(index) for index in parameters["objects"].split()]
         self.half = float(parameters["cube"]) / 2
@@ -71,14 +73,14 @@ class Frames:
                 self.object_of_face.append(current)
         self.faces, self.object_of_face = np.array(self.faces), np.array(self.object_of_face)
         self.positions = np.fromfile(folder / "figures_positions.f32", np.float32).reshape(-1, vertices, 3)
-        self.regions = self.by_frame(rows_of(folder, "figures_regions"))
-        self.spheres = self.by_frame(rows_of(folder, "figures_spheres"))
-        self.boxes = self.by_frame(rows_of(folder, "figures_boxes"))
+        self.regions = self.by_frame(tables.rows("figures_regions"))
+        self.spheres = self.by_frame(tables.rows("figures_spheres"))
+        self.boxes = self.by_frame(tables.rows("figures_boxes"))
 
     def by_frame(self, rows):
         result = {}
         for row in rows:
-            result.setdefault(int(row.pop("frame")), []).append({name: float(value) for name, value in row.items()})
+            result.setdefault(int(row["frame"]), []).append(row)
         return result
 
 
@@ -171,47 +173,35 @@ def write_videos(output):
 # --- the page ---
 
 
-def reports_of(output):
-    return {name: json.loads((output / name / f"{name}_report.json").read_text()) for name in EXPERIMENTS}
-
-
 def picture(path, text):
     data = base64.b64encode(path.read_bytes()).decode()
     return f'<img alt="{escaped(text)}" src="data:image/{path.suffix[1:]};base64,{data}"/>'
 
 
 def page_of(output):
-    reports = reports_of(output)
-
-    def plots(name, table):
-        return list(plots_of(output / name, table, reports[name]["parameters"]))
-
-    def table(name, wanted):
-        return next(table_of(output / name, described) for section in reports[name]["sections"]
-                    for described in section["tables"] if described["name"] == wanted)
-
-    commits = {report["machine"]["commit"] for report in reports.values()}
+    tables = Tables(*(output / name for name in EXPERIMENTS))
+    head = tables.head("figures_1")
     parts = [f"<p>All figures, the table and the claims of <em>Collision Detection for Deformable Objects using Octrees</em> "
-             f"(2007), from our own data. {escaped(reports['figures']['summary'].split('. Figures')[0])}.</p>",
-             "<h2>Figure 1</h2>", *plots("figures", "figures_1"), "<h2>Figure 2</h2>", *plots("figures", "figures_2"),
+             f"(2007), from our own data. The figures show the collision of {escaped(head['collision'])}.</p>",
+             "<h2>Figure 1</h2>", *report.modules_plots(tables), "<h2>Figure 2</h2>", *report.regions_plots(tables),
              "<h2>Figure 3: the octree in the broad phase with spheres</h2>",
              "<p>Red regions have two objects or more, blue ones have one.</p>",
              f'<div class="figures">{picture(output / "figure3.png", "regions of the scene octree and spheres")}'
              f'{picture(output / "figure3.webp", "the same as a video")}</div>',
-             "<h2>Figure 4</h2>", *plots("figures", "figures_4"), table("figures", "figures_4"),
+             "<h2>Figure 4</h2>", *report.descent_plots(tables), table(*report.summary(tables, "figures_4")),
              "<h2>Figure 5: a collision in the narrow phase with boxes</h2>",
              "<p>The boxes of the leaves that collide, of both objects.</p>",
              f'<div class="figures">{picture(output / "figure5.png", "boxes of the colliding leaves of two objects")}'
              f'{picture(output / "figure5.webp", "the same as a video")}</div>',
              "<h2>Table 1: collisions in ten minutes, by three clocks, and in the paper</h2>",
-             *plots("table1", "table1_clocks"), table("table1", "table1_rates"), table("table1", "table1_clocks"),
-             table("table1", "table1_paper"), "<h2>From 2007 to today</h2>", *plots("ablation", "ablation"),
-             "<h2>Settings that the paper does not state</h2>", *plots("sensitivity", "sensitivity"), "<h2>What holds</h2>"]
-    parts += [html_of_claim(claim) for report in reports.values() for claim in report["claims"]]
+             *report.table1_plots(tables), *(table(*listing(tables)) for listing in (report.rates, report.ratios, report.averages)),
+             "<h2>From 2007 to today</h2>", *report.ablation_plots(tables),
+             "<h2>Settings that the paper does not state</h2>", *report.sensitivity_plots(tables), "<h2>What holds</h2>"]
+    parts += map(report.html_of_claim, claims.judged(tables))
     parts += ["<h2>Where it comes from</h2>",
-              f"<p>Commit {escaped(', '.join(sorted(commits)))}, {escaped(reports['table1']['machine'].get('processor', ''))}. "
+              f"<p>Commit {escaped(head['commit'])}, {escaped(head['processor'])}. "
               "Each folder beside this page has the tables and the page of one experiment.</p>"]
-    return page("The paper, repeated", parts, STYLE)
+    return page("The paper, repeated" + (" (quick version)" if "--quick" in head["command"] else ""), parts, STYLE)
 
 
 def main():

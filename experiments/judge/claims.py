@@ -6,6 +6,7 @@ it, from the tables of the experiments. Tests with the same `when` decide togeth
 
 import dataclasses
 import math
+import re
 
 import numpy as np
 
@@ -43,13 +44,22 @@ class Claim:
         if len(holds) == len(cases):
             return HOLDS
         if holds:
-            return f"{HOLDS} if {'; '.join(holds)}"
+            return f"{HOLDS} if {in_one(holds)}"
         return FAILS if all(outcome is False for outcome in cases.values()) else UNDECIDED
 
     @property
     def numbers(self):
         """All numbers with their intervals and cases."""
         return "; ".join(text_of(test.number, test.level) + (f" ({test.when})" if test.when else "") for test in self.tests)
+
+
+def in_one(cases):
+    """Cases that begin and end alike in one: `there are 200 or 500 objects`."""
+    parts = [re.fullmatch(r"(there are )(.*)( objects)", case) for case in cases]
+    if len(cases) < 2 or not all(parts):
+        return "; ".join(cases)
+    numbers = [part[2] for part in parts]
+    return f"there are {', '.join(numbers[:-1])} or {numbers[-1]} objects"
 
 
 CLAIMS = []
@@ -138,7 +148,7 @@ def paper_ratio(objects, phase):
 def more_with_boxes(clock):
     def measure(tables):
         for objects in mixed(tables, clock):
-            yield Test(ratio(tables, f"table1_{objects}", "broad", clock), high=1, when=f"{objects} objects")
+            yield Test(ratio(tables, f"table1_{objects}", "broad", clock), high=1, when=f"there are {objects} objects")
 
     return measure
 
@@ -162,7 +172,7 @@ def _(tables):
        "collisions of a run, broad phase − narrow phase")
 def _(tables):
     for scene in scenes(tables):
-        yield Test(mean_of([row["broad"] - row["narrow"] for row in runs(tables, scene=scene)]), low=0, when=scene_in_words(scene))
+        yield Test(mean_of([row["broad"] - row["narrow"] for row in runs(tables, scene=scene)]), low=0, when=f"there are {scene_in_words(scene)}")
 
 
 @claim("time-explains-fewer", "7, 2", "The time of the narrow phase explains its smaller number.",
@@ -181,7 +191,7 @@ def _(tables):
             continue
         few, many = (ratio(tables, f"table1_{objects}", "broad", clock) for objects in (3, 9))
         yield Test(Estimate(abs(few.mean - 1) - abs(many.mean - 1), math.hypot(few.error, many.error), min(few.freedom, many.freedom)),
-                   low=0, when=f"by {clock}")
+                   low=0, when=f"it is counted by {clock}")
 
 
 @claim("almost-the-same", "7, 5", "The numbers are almost the same in the broad phase from 10 objects on, in the narrow phase from 20 on.",
@@ -192,7 +202,7 @@ def _(tables):
         for phase, least in (("broad", 10), ("narrow", 20)):
             for objects in mixed(tables, clock):
                 if objects >= least:
-                    yield Test(ratio(tables, f"table1_{objects}", phase, clock), 0.9, 1.1, f"by {clock}, {phase} phase")
+                    yield Test(ratio(tables, f"table1_{objects}", phase, clock), 0.9, 1.1, f"it is counted by {clock} in the {phase} phase")
 
 
 @claim("more-objects", "7, 5", "With more objects a collision comes sooner.", "collisions of a run / with the next smaller number of objects")
@@ -219,7 +229,7 @@ def _(tables):
 def _(tables):
     if "three_humans" in scenes(tables):
         for clock in (SIMULATED, DETECTION, PROGRAM):
-            yield Test(ratio(tables, "three_humans", "broad", clock), 0.9, 1.1, f"by {clock}")
+            yield Test(ratio(tables, "three_humans", "broad", clock), 0.9, 1.1, f"it is counted by {clock}")
 
 
 @claim("complex-bikes", "7, 6", "Three bikes have one or two collisions more with boxes than with spheres.",
@@ -237,7 +247,7 @@ def _(tables):
 def _(tables):
     for scene in scenes(tables):
         milliseconds = [1e3 * (row["detection_seconds"] + row["motion_seconds"]) / row["steps"] for row in runs(tables, scene=scene)]
-        yield Test(mean_of(milliseconds), high=1e3 / 30, when=scene_in_words(scene))
+        yield Test(mean_of(milliseconds), high=1e3 / 30, when=f"there are {scene_in_words(scene)}")
 
 
 @claim("exact-counts-equal", "", "Exact contacts are the same with all volumes.", "runs with another number than with the first volume")
@@ -332,14 +342,14 @@ def n_log_n(n):
 def _(tables):
     for boxes in box_counts(tables, "plain octree"):
         if boxes <= 1000:
-            yield Test(step_ratio(tables, "plain brute force", "plain octree", boxes), low=1, when=f"{boxes:.0f} objects")
+            yield Test(step_ratio(tables, "plain brute force", "plain octree", boxes), low=1, when=f"there are {boxes:,.0f} objects")
 
 
 @claim("better-than-brute-many", "", "Today's octree is better than today's brute force from 1,000 objects on.", "time of brute force / of the octree")
 def _(tables):
     for boxes in box_counts(tables, "brute force"):
         if boxes >= 1000:
-            yield Test(step_ratio(tables, "brute force", "octree", boxes), low=1, when=f"{boxes:,.0f} objects")
+            yield Test(step_ratio(tables, "brute force", "octree", boxes), low=1, when=f"there are {boxes:,.0f} objects")
 
 
 @claim("like-sweep", "7, 8", "The broad phase is comparable with sweep and prune.", "time of sweep and prune / of the octree of 2007",
@@ -347,7 +357,7 @@ def _(tables):
 def _(tables):
     for boxes in box_counts(tables, "plain octree"):
         if boxes <= 1000:
-            yield Test(step_ratio(tables, "plain sweep", "plain octree", boxes), 0.5, 2, f"{boxes:.0f} objects")
+            yield Test(step_ratio(tables, "plain sweep", "plain octree", boxes), 0.5, 2, f"there are {boxes:,.0f} objects")
 
 
 @claim("brute-force", "5, 1", "Brute force takes O(n²).", "exponent of the tests")
@@ -360,8 +370,8 @@ def _(tables):
 @claim("sweep", "5, 1", "Sweep and prune [Bar92], with lists on three axes, takes O(n log n).", "exponent of the exchanges and of the time",
        "At constant density, all boxes in motion.", "Each list holds the ends of all boxes, however far apart along the other axes.")
 def _(tables):
-    yield from grows_as(growth(tables, "sweep3", "tests", 100), n_log_n, OF_COUNTS, "exchanges")
-    yield from grows_as(growth(tables, "sweep3", "step", 100), n_log_n, OF_TIMES, "time")
+    yield from grows_as(growth(tables, "sweep3", "tests", 100), n_log_n, OF_COUNTS, "the exchanges are counted")
+    yield from grows_as(growth(tables, "sweep3", "step", 100), n_log_n, OF_TIMES, "the time is")
 
 
 @claim("three-axes", "", "Lists on three axes [Bar92] are faster than to sort along one axis in each step.", "time of three axes / of one")
@@ -369,7 +379,7 @@ def _(tables):
     for moving in ("all", "1 %"):
         for boxes in box_counts(tables, "sweep3", moving):
             if boxes >= 100:
-                yield Test(step_ratio(tables, "sweep3", "sweep", boxes, moving), high=1, when=f"{moving} of the boxes move")
+                yield Test(step_ratio(tables, "sweep3", "sweep", boxes, moving), high=1, when=f"{moving} boxes move" if moving == "all" else f"{moving} of the boxes move")
 
 
 @claim("region-tests", "7, 8", "The tests of regions and volumes take O(n log n).", "exponent of the time of the first step")
@@ -440,13 +450,13 @@ def _(tables):
 def _(tables):
     for code in ("scalar", "vectors"):
         boxes, spheres = (tables.column("claims_tests", "seconds", code=code, volume=volume) for volume in ("boxes", "spheres"))
-        yield Test(ratio_of(boxes, spheres), high=1, when="one by one" if code == "scalar" else "many at once, with vectors")
+        yield Test(ratio_of(boxes, spheres), high=1, when="they are made one by one" if code == "scalar" else "many are made at once, with vectors")
 
 
 @claim("grown-box", "5.1, 4", "The grown box is easier to test than Arvo's closest point.", "time with the grown box / with Arvo's test",
        remark="The grown box places spheres in more regions, near edges and corners.")
 def _(tables):
-    for column, when in (("fresh_seconds", "a new octree"), ("step_seconds", "a step")):
+    for column, when in (("fresh_seconds", "the octree is new"), ("step_seconds", "it is a step that follows another")):
         grown, arvo = (tables.column("claims_regions", column, test=test) for test in ("grown_box", "arvo"))
         yield Test(ratio_of(grown, arvo), high=1, when=when)
 
@@ -523,13 +533,13 @@ def _(tables):
 @claim("areas", "4, 1", "The area of each triangle is preserved.", "mean change of the area of a triangle, % of it", "It changes by less than 5 % in the mean.")
 def _(tables):
     for row in tables.rows("claims_areas", preserved="yes"):
-        yield Test(counted(100 * row["mean_area_error"]), high=5, when=scene_in_words(row["scene"]))
+        yield Test(counted(100 * row["mean_area_error"]), high=5, when=f"there are {scene_in_words(row['scene'])}")
 
 
 @claim("limits", "4, 3", "The shape stays within limits.", "largest strain of an edge, %", "No edge is strained by more than 15 %.")
 def _(tables):
     for row in tables.rows("claims_areas", preserved="yes"):
-        yield Test(counted(100 * row["largest_strain"]), high=15, when=scene_in_words(row["scene"]))
+        yield Test(counted(100 * row["largest_strain"]), high=15, when=f"there are {scene_in_words(row['scene'])}")
 
 
 # --- arity ---
@@ -547,7 +557,7 @@ def _(tables):
     for leaf_size in sizes:
         work = {arity: of_arity(tables, lambda row: row["tests"] + row["nodes"] * row["children_per_node"], arity, leaf_size) for arity in (2, 4, 8)}
         best = min((ratio_of(work[arity], work[2]) for arity in (4, 8)), key=lambda ratio: ratio.mean)
-        yield Test(best, high=0.95, when="leaves of one triangle" if leaf_size == 1 else f"leaves of up to {leaf_size:.0f} triangles")
+        yield Test(best, high=0.95, when="leaves have one triangle" if leaf_size == 1 else f"leaves have up to {leaf_size:.0f} triangles")
 
 
 @claim("log-k", "7, 8", "With k-ary trees in the broad phase the complexity changes in the logarithm of base k.",
@@ -562,7 +572,7 @@ def _(tables):
 @claim("colliding-children", "6, 7", "At most half of the children of a node collide: 4 of 8, 2 of 4, 1 of 2.", "children of a node that collide, at most")
 def _(tables):
     for arity, most in tables.by("arity_colliding_children", "arity", "most").items():
-        yield Test(counted(max(most)), high=arity / 2, when=f"of {arity:.0f}")
+        yield Test(counted(max(most)), high=arity / 2, when=f"nodes have {arity:.0f} children")
 
 
 @claim("steps-of-a-level", "7, 9", "A pair of nodes takes at most 8 (4 + 1) steps.", "tests of a pair of nodes, at most")
@@ -616,7 +626,7 @@ def trial_ratio(tables, scene, trial):
 def slower_trial(trial):
     def measure(tables):
         for scene in dict.fromkeys(tables.column("trials", "scene")):
-            yield Test(trial_ratio(tables, scene, trial), low=1, when=scene_in_words(scene))
+            yield Test(trial_ratio(tables, scene, trial), low=1, when=f"there are {scene_in_words(scene)}")
 
     return measure
 
@@ -640,7 +650,7 @@ def _(tables):
 def _(tables):
     for row in tables.rows("trials_corners"):
         read = tables.column("trials", "vertices", scene=row["scene"], trial="the hierarchy")[0]
-        yield Test(counted(read / row["all"]), high=1, when=scene_in_words(row["scene"]))
+        yield Test(counted(read / row["all"]), high=1, when=f"there are {scene_in_words(row['scene'])}")
 
 
 @claim("octree-of-spheres", "5.1, 3", "An octree of spheres for the scene is less accurate than one of cubes.", "pairs of objects that share a region, spheres / cubes")
@@ -659,4 +669,4 @@ def program_seconds(tables, scene, place):
 def _(tables):
     for scene in dict.fromkeys(tables.column("ablation", "scene")):
         last = max(tables.column("ablation", "place", scene=scene))
-        yield Test(ratio_of(program_seconds(tables, scene, 0), program_seconds(tables, scene, last)), low=1, when=scene_in_words(scene))
+        yield Test(ratio_of(program_seconds(tables, scene, 0), program_seconds(tables, scene, last)), low=1, when=f"there are {scene_in_words(scene)}")

@@ -10,6 +10,8 @@ import math
 import numpy as np
 from scipy import stats
 
+from judge.text import rounded
+
 LEVEL = 0.05
 
 
@@ -130,19 +132,6 @@ def set_levels(tests):
             level = LEVEL / (len(measured) - rank)
             is_rejecting = test.chance() <= level
         test.level = level
-
-
-def rounded(value, digits=3):
-    """With significant digits; only numbers far from 1 in scientific notation."""
-    if not math.isfinite(value):
-        return "–" if math.isnan(value) else "∞" if value > 0 else "-∞"
-    if value == 0:
-        return "0"
-    scientific = f"{value:.{digits - 1}e}"
-    magnitude = int(scientific[scientific.index("e") + 1 :])
-    if magnitude < -5 or magnitude > 8:
-        return scientific
-    return f"{value:,.{max(0, digits - 1 - magnitude)}f}"
 
 
 def text_of(number, level=LEVEL, digits=3):

@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-from judge.estimates import rounded
+from judge.text import rounded
 
 # Distinguishable on white, also for most people with colour vision deficiency.
 COLORS = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#9467bd", "#888888", "#33bbee", "#ee3377", "#999933"]

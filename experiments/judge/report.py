@@ -10,10 +10,11 @@ import sys
 
 import numpy as np
 
-from judge import claims, paper
-from judge.estimates import LEVEL, rounded
-from judge.pages import COLORS, bar_plot, escaped, line_plot, new_plot, page, point_plot, stop, svg_of, table
+from judge import claims, pages, paper
+from judge.estimates import LEVEL, ratio_of, text_of
+from judge.pages import COLORS, bar_plot, escaped, line_plot, new_plot, page, point_plot, stop, svg_of
 from judge.tables import Tables
+from judge.text import rounded
 
 TITLES = {
     "table1": "The paper's Table 1: collisions of moving objects",
@@ -208,7 +209,7 @@ PLOTS = {"table1": (table1_plots,), "scaling": (broad_phase_plots, vertices_plot
          "trials": (trials_plots,), "sensitivity": (sensitivity_plots,), "figures": (modules_plots, regions_plots, descent_plots)}
 
 
-# --- tables ---
+# --- tables: heading, rows, columns with text, caption ---
 
 
 def rates(tables):
@@ -224,19 +225,41 @@ def rates(tables):
                 objects = int(scene.removeprefix("table1_")) if scene in ("table1_3", "table1_6", "table1_9") else None
                 theirs = rounded(float(np.mean(paper.runs(objects, volume, phase)))) if (objects, volume) in paper.TABLE1 else "–"
                 rows.append([claims.scene_in_words(scene), volume, phase, *numbers, theirs])
-    return table(["Scene", "Volume", "Phase", *(f"By {clock}" for clock in CLOCKS), "The paper"], rows, (0, 1, 2),
-                 "Collisions in a run; by a clock, in ten minutes of it")
+    return (["Scene", "Volume", "Phase", *(f"By {clock}" for clock in CLOCKS), "The paper"], rows, (0, 1, 2),
+            "Collisions in a run; by a clock, in ten minutes of it")
+
+
+def ratios(tables):
+    """Spheres for each box by each clock, with intervals, and in the paper."""
+    rows = []
+    for scene in claims.scenes(tables):
+        for phase in paper.PHASES:
+            of_paper = text_of(claims.paper_ratio(int(scene.removeprefix("table1_")), phase)) if scene in ("table1_3", "table1_6", "table1_9") else "–"
+            rows.append([claims.scene_in_words(scene), phase, *(text_of(claims.ratio(tables, scene, phase, clock)) for clock in CLOCKS), of_paper])
+    return ["Scene", "Phase", *(f"By {clock}" for clock in CLOCKS), "The paper"], rows, (0, 1), "Collisions with spheres for each with boxes"
+
+
+def changes(tables):
+    """One choice of today at a time."""
+    rows = []
+    for scene in dict.fromkeys(tables.column("ablation", "scene")):
+        seconds = {row["place"]: (row["change"], claims.program_seconds(tables, scene, row["place"])) for row in tables.rows("ablation", scene=scene)}
+        for place, (change, of_change) in seconds.items():
+            before, first = seconds[max(place - 1, 0)][1], seconds[0][1]
+            rows.append([claims.scene_in_words(scene), change, rounded(1e3 * float(np.median(of_change))), text_of(ratio_of(before, of_change)),
+                         text_of(ratio_of(first, of_change))])
+    return ["Scene", "One more choice of today", "ms of a step", "× the row above", "× 2007"], rows, (0, 1), "From the program of 2007 to today"
 
 
 def strains(tables):
     rows = [[claims.scene_in_words(row["scene"]), row["preserved"], *(f"{100 * row[column]:.2g} %" for column in ("mean_area_error", "mean_strain", "largest_strain"))]
             for row in tables.rows("claims_areas")]
-    return table(["Scene", "Areas preserved", "Mean change of an area", "Mean strain of an edge", "Largest strain"], rows, (0, 1), "Areas and strains")
+    return ["Scene", "Areas preserved", "Mean change of an area", "Mean strain of an edge", "Largest strain"], rows, (0, 1), "Areas and strains"
 
 
-def averages():
+def averages(_):
     rows = [[objects, volume, phase, f"{by_table:.4g}", f"{text:.4g}", how] for objects, volume, phase, by_table, text, how in paper.averages()]
-    return table(["Objects", "Volume", "Phase", "Seconds for a collision by Table 1", "in the text", ""], rows, (1, 2, 5), "The averages of the text")
+    return ["Objects", "Volume", "Phase", "Seconds for a collision by Table 1", "in the text", ""], rows, (1, 2, 5), "The averages of the text"
 
 
 def cell_of(value):
@@ -248,8 +271,6 @@ def cell_of(value):
 def summary(tables, name):
     """A table of files: rows that differ by their round become one, with the medians of its numbers."""
     rows = tables.rows(name)
-    if not rows:
-        return ""
     columns = list(rows[0])
     first = min((columns.index(column) for column in ("round", "seed") if column in columns), default=None)
     if first is not None:
@@ -261,8 +282,43 @@ def summary(tables, name):
         rows = [dict(zip(columns[:first], case)) | {column: float(np.median([row[column] for row in of_rows])) for column in measured}
                 for case, of_rows in of_case.items()]
     texts = [i for i, column in enumerate(columns) if any(isinstance(row[column], str) for row in rows)]
-    return table([column.replace("_", " ") for column in columns], [[cell_of(row[column]) for column in columns] for row in rows], texts,
-                 f"{name}.csv" + (": medians of the rounds" if first is not None else ""))
+    return ([column.replace("_", " ") for column in columns], [[cell_of(row[column]) for column in columns] for row in rows], texts,
+            f"{name}.csv" + (": medians of the rounds" if first is not None else ""))
+
+
+LISTINGS = {"table1": (rates, ratios, averages), "claims": (strains,), "ablation": (changes,)}
+
+
+# --- the figure of what holds ---
+
+
+def draw_what_holds(tables, path):
+    """Spheres for each box, and brute force against the octree of 2007, by the number of objects."""
+    import matplotlib
+    from matplotlib.figure import Figure
+    matplotlib.rcParams.update({"svg.hashsalt": "what_holds", "svg.fonttype": "none", "font.size": 11, "axes.spines.top": False, "axes.spines.right": False})
+    figure = Figure(figsize=(11, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for axes, title in ((left, "Collisions with spheres for each with boxes"), (right, "Time of brute force for each of the octree")):
+        axes.set_title(title, loc="left", fontsize=12)
+        axes.set_xlabel("objects")
+        axes.axhline(1, color="#888888", linewidth=0.8)
+        axes.set_xscale("log")
+        axes.grid(color="#ddd", linewidth=0.7)
+    for clock, color in zip(CLOCKS, COLORS):
+        points = [(objects, claims.ratio(tables, f"table1_{objects}", "broad", clock)) for objects in claims.mixed(tables, clock)]
+        points = [(objects, number) for objects, number in points if math.isfinite(number.error)]
+        lines = [(objects, number.mean, *number.interval()) for objects, number in points]
+        left.plot([line[0] for line in lines], [line[1] for line in lines], marker="o", markersize=4, color=color, label=f"by {clock}")
+        left.fill_between([line[0] for line in lines], [line[2] for line in lines], [line[3] for line in lines], color=color, alpha=0.18, linewidth=0)
+    left.plot([3, 6, 9], [claims.paper_ratio(objects, "broad").mean for objects in (3, 6, 9)], linestyle="", marker="s", color="black", label="the paper")
+    for brute, octree, label, color in (("plain brute force", "plain octree", "programs of 2007's kind", COLORS[0]), ("brute force", "octree", "Supple today", COLORS[1])):
+        sizes = [boxes for boxes in claims.box_counts(tables, octree) if boxes in claims.box_counts(tables, brute)]
+        right.plot(sizes, [claims.step_ratio(tables, brute, octree, boxes).mean for boxes in sizes], marker="o", markersize=4, color=color, label=label)
+    right.set_yscale("log")
+    for axes in (left, right):
+        axes.legend(frameon=False)
+    figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})
 
 
 # --- the page ---
@@ -299,10 +355,9 @@ def html_of(tables, name, found):
              "(Holm). A verdict is undecided when the interval has the limit in it.</p>"] if found else []
     parts += [html_of_claim(claim) for claim in found]
     parts += ["<h2>Measurements</h2>", *(plot for plots in PLOTS.get(name, ()) for plot in plots(tables))]
-    parts += [rates(tables), averages()] if name == "table1" else []
-    parts += [strains(tables)] if name == "claims" else []
-    parts += [summary(tables, each) for each in shown]
-    parts += ["<h2>Parameters and machine</h2>", table([], head.items(), (0, 1))]
+    parts += [pages.table(*listing(tables)) for listing in LISTINGS.get(name, ())]
+    parts += [pages.table(*summary(tables, each)) for each in shown if tables.rows(each)]
+    parts += ["<h2>Parameters and machine</h2>", pages.table([], head.items(), (0, 1))]
     return page(TITLES[name], parts)
 
 

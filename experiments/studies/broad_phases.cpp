@@ -51,7 +51,7 @@ constexpr std::array methods{
     Method{"octree", false, [](const BoxField&) { return of_library(BroadPhaseMethod::octree); }},
     Method{"grid", false, [](const BoxField&) { return of_library(BroadPhaseMethod::grid); }},
     Method{"sweep", false, [](const BoxField&) { return of_library(BroadPhaseMethod::sweep); }},
-    Method{"sweep3", true, [](const BoxField&) { return of_library(BroadPhaseMethod::sweep /*3*/); }},
+    Method{"sweep3", true, [](const BoxField&) { return of_library(BroadPhaseMethod::sweep3); }},
     Method{"brute force", true, [](const BoxField&) { return of_library(BroadPhaseMethod::brute); }},
     Method{"plain octree", true,
            [](const BoxField& field) {

@@ -45,16 +45,6 @@ std::optional<double> energy_kept(MassSpringBody body, double step, double secon
   return body.energy().total() / start;
 }
 
-/// The mean over the triangles of |area / area at the start - 1|.
-double area_error(const TriangleMesh& mesh, std::span<const Vec3d> positions) {
-  const auto area = [](const auto& p, const Triangle& t) {
-    return norm(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
-  };
-  double sum = 0;
-  for (const Triangle& t : mesh.triangles) sum += std::fabs(area(positions, t) / area(mesh.positions, t) - 1);
-  return sum / static_cast<double>(mesh.triangles.size());
-}
-
 }  // namespace
 
 /// Section 5.2: the translation is added to the box.
@@ -151,16 +141,14 @@ Table areas_and_strains(const ClaimsOptions& options) {
       }
       Variant variant{{}, BoundingVolume::aabb};
       variant.method.scene.contacts = ContactKinds::none;
-      const std::vector<cli::InputObject> objects = input.objects;
       Simulation simulation = build_variant(input, variant);
       double error = 0, mean = 0, largest = 0, samples = 0;
       while (simulation.time() < options.motion_seconds) {
         simulation.step();
         if (simulation.step_count() % StrainSampler::every != 0) continue;
-        for (std::size_t i = 0; i < objects.size(); ++i) {
-          const ObjectId id = simulation.scene().objects()[i];
+        for (const ObjectId id : simulation.scene().objects()) {
           const EdgeStrain strain = simulation.body(id)->edge_strain();
-          error += area_error(objects[i].mesh, simulation.positions(id));
+          error += simulation.body(id)->area_error().mean;
           mean += strain.mean;
           largest = std::max(largest, strain.largest);
           ++samples;
