@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -50,32 +49,17 @@ bool LazyRefit::refit_object(ObjectOctree& octree, const VertexBuffer& vertices,
 }
 
 std::size_t LazyRefit::refit_children(ObjectOctree& octree, std::uint32_t n, const VertexBuffer& vertices) {
-  if (octree.is_current_[n] != 0) return 0;
+  if (std::exchange(octree.is_current_[n], std::uint8_t{1}) != 0) return 0;
   const OctreeNode& node = octree.nodes_[n];
-  octree.is_listed_.resize(octree.vertex_count_, 0);
-  octree.child_vertices_.resize(std::max(octree.child_vertices_.size(), std::size_t{3} * node.size()));
-  std::array<std::span<const std::uint32_t>, node_width> child_vertices;
-  std::uint32_t* next = octree.child_vertices_.data();
   for (int child = 0; child < node_width; ++child) {
-    std::uint32_t* const first = next;
+    QueryBox bounds = no_box();
     for (std::uint32_t t = node.first_triangle[child]; t < node.first_triangle[child + 1]; ++t) {
       for (const std::uint32_t vertex : octree.triangles_[t])
-        if (std::exchange(octree.is_listed_[vertex], std::uint8_t{1}) == 0) *next++ = vertex;
-    }
-    child_vertices[static_cast<std::size_t>(child)] = {first, next};
-    QueryBox bounds = no_box();
-    for (const std::uint32_t vertex : child_vertices[static_cast<std::size_t>(child)]) {
-      extend(bounds, vertices[vertex], vertices[vertex]);
-      octree.is_listed_[vertex] = 0;
+        extend(bounds, vertices[vertex], vertices[vertex]);
     }
     set_child_box(octree.boxes_[n], child, rounded(bounds));
   }
-  if (octree.volumes_) {
-    RefittedOctree refitted = octree.refitted(vertices, {}, false);
-    refitted.child_vertices = child_vertices;
-    octree.volumes_->refit(refitted, n, n + 1);
-  }
-  octree.is_current_[n] = 1;
+  if (octree.volumes_) octree.volumes_->refit(octree.refitted(vertices, {}, false), n, n + 1);
   return node.size();
 }
 

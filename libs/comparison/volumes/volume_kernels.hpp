@@ -28,10 +28,6 @@ constexpr std::size_t floats_per_slab = 2 * std::size_t{node_width};
 /// a leaf once.
 template <class Visit>
 void for_each_vertex(const RefittedOctree& octree, std::uint32_t n, int child, const Visit& visit) {
-  if (!octree.child_vertices.empty()) {
-    std::ranges::for_each(octree.child_vertices[static_cast<std::size_t>(child)], visit);
-    return;
-  }
   const OctreeNode& node = octree.nodes[n];
   if (octree.inert.empty() && !node.is_inner(child)) {
     const std::uint32_t* const first = octree.leaves.first + std::size_t{n} * node_width + child;

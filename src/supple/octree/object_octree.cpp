@@ -240,11 +240,10 @@ std::size_t ObjectOctree::bytes() const {
          (volumes_ ? volumes_->bytes() : 0) + triangles_.capacity() * sizeof(Triangle) +
          (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
           first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity() +
-          first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity() +
-          child_vertices_.capacity()) *
+          first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity()) *
              sizeof(std::uint32_t) +
          cell_numbers_.capacity() * sizeof(std::uint64_t) + leaf_corners_.capacity() + is_stale_.capacity() +
-         is_current_.capacity() + is_listed_.capacity();
+         is_current_.capacity();
 }
 
 }  // namespace supple

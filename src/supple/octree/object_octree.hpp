@@ -139,9 +139,6 @@ class ObjectOctree {
   std::vector<std::uint32_t> first_node_, nodes_of_vertices_, stale_nodes_;
   std::vector<std::uint8_t> is_stale_;
   std::vector<std::uint8_t> is_current_;  // by node, since `LazyRefit::refit_object`
-  // Scratch memory of `LazyRefit::refit_children`: the vertices of the children, and a byte for each vertex.
-  std::vector<std::uint32_t> child_vertices_;
-  std::vector<std::uint8_t> is_listed_;
   ObjectOctreeOptions options_;
   BoundingVolume bounding_volume_;
   SphereFit sphere_fit_;

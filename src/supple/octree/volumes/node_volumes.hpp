@@ -30,8 +30,6 @@ struct RefittedOctree {
   std::span<const std::uint32_t> unused_vertices;  ///< of no triangle; ascending
   /// False: the volumes of deeper nodes are out of date.
   bool are_nodes_current = true;
-  /// Then, for `NodeVolumes::refit`: the vertices of each child of the node, each once.
-  std::span<const std::span<const std::uint32_t>> child_vertices{};
 };
 
 /// Volumes other than boxes of the nodes of one octree. The search tests spheres instead of boxes, and the
