@@ -15,7 +15,7 @@ import pathlib
 import re
 
 # Enumerations that only the programs of this repository use.
-LEFT_OUT = {"Names", "ScalarType", "FieldInfo::Kind", "MatrixItems", "UpAxis", "LengthUnit", "ContactSide", "viewer::FieldElement"}
+LEFT_OUT = {"Names", "ScalarType", "FieldInfo::Kind", "MatrixItems", "UpAxis", "LengthUnit", "ContactSide", "SearchedShape", "viewer::FieldElement"}
 
 # Classes of C++ that are in Python as they are.
 CLASSES = {"Error", "MotionError"}
@@ -81,7 +81,7 @@ class Described:
         self.enums = {entity["name"]: entity for header in api["headers"] for entity in header["entities"]
                       if entity["kind"] == "enum"}
         self.words = {name.split("::", 1)[-1] if name.startswith("viewer::") else name: re.findall(r'"([^"]+)"', words)
-                      for name, words in re.findall(r"constexpr std::array words<([\w:]+)>\{(.*?)\}", text, re.DOTALL)}
+                      for name, words in re.findall(r"constexpr std::array (?:set_)?words<([\w:]+)>\{(.*?)\}", text, re.DOTALL)}
         self.blocks = dict(re.findall(r"\nstruct Description<(?:viewer::)?([\w:]+)> ([:{].*?)\n\};", text, re.DOTALL))
 
     def members(self, struct):

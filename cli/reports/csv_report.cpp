@@ -26,12 +26,9 @@ void for_each_cell(const RecordInfo& record, bool details, Visit visit) {
 
 /// The place of the list of the last of these kinds, if any: with penetration, the intersections are not the
 /// answer.
-std::optional<std::size_t> place_of_answer(ContactKinds kinds) {
+std::optional<std::size_t> place_of_last(ContactKinds kinds) {
   const auto last = static_cast<ContactKinds>(std::bit_floor(static_cast<unsigned>(kinds)));
-  for (std::size_t i = 0; last != ContactKinds::none && i < list_infos().size(); ++i) {
-    if (list_infos()[i].answers == last) return i;
-  }
-  return std::nullopt;
+  return last == ContactKinds::none ? std::nullopt : std::optional(place_of_answer(last));
 }
 
 void add_row(fmt::memory_buffer& rows, std::uint64_t frame, const RecordInfo& record, const std::byte* row,
@@ -53,7 +50,7 @@ void add_row(fmt::memory_buffer& rows, std::uint64_t frame, const RecordInfo& re
 
 std::vector<std::string> csv_columns(ContactKinds kinds, bool details) {
   std::vector<std::string> columns{"frame"};
-  const std::optional<std::size_t> place = place_of_answer(kinds);
+  const std::optional<std::size_t> place = place_of_last(kinds);
   if (!place) return columns;
   for_each_cell(list_infos()[*place].record, details, [&](const FieldInfo& field) {
     const std::string key = short_key(field.name);
@@ -92,7 +89,7 @@ class CsvReport : public Report {
     if (has_kinds_) {
       add_narrow_phase(frame, rows);
     } else {
-      const std::optional<std::size_t> place = place_of_answer(kinds_);
+      const std::optional<std::size_t> place = place_of_last(kinds_);
       const ListRows list = place ? supple::rows_of(frame.result)[*place] : ListRows{};
       for (std::size_t i = 0; i < list.count; ++i) {
         const RecordInfo& record = list_infos()[*place].record;

@@ -131,6 +131,7 @@ class JsonReport : public Report {
     }
     const bool penetration = contains(options.contacts, ContactKinds::penetration);
     if (penetration) write_penetration(json_, result, content_.contact_details);
+    write_other_answers(json_, result, options.contacts);
     if (options.manifolds) write_manifolds(json_, result);
     if (options.comparison.colliding_vertices) write_colliding_vertices(json_, result);
     if (content_.node_pairs) write_node_pairs(json_, objects_.scene(), *content_.node_pairs);
@@ -139,8 +140,10 @@ class JsonReport : public Report {
       if (options.comparison.colliding_vertices)
         write_events(json_, "narrow_phase", result.narrow_phase_events);
       write_events(json_, "contacts", result.contact_events);
-      if (proximity) write_events(json_, "proximity", result.proximity_events);
-      if (penetration) write_events(json_, "penetration", result.penetration_events);
+      for (const ContactKindInfo& of : contact_kinds) {
+        if (of.events != &DetectResult::contact_events && contains(options.contacts, of.kind))
+          write_events(json_, word_of(of.kind), result.*of.events);
+      }
     });
     write_records(json_, "non_finite", result.non_finite_vertices);
     if (frame.verify) {

@@ -88,8 +88,7 @@ void Reports::add(const Frame& frame) {
   tested_.add(frame);
   last_frame_ = frame.number;
   if (frame.result.truncated) ++truncated_frames_;
-  touched_ = touched_ || !frame.result.groups.empty() || !frame.result.continuous_groups.empty() ||
-             !frame.result.proximity_groups.empty() || !frame.result.penetration_groups.empty();
+  for (const ContactKindInfo& kind : contact_kinds) touched_ = touched_ || kind.is_in(frame.result);
   if (frame.verify && !frame.verify->agrees() && !std::exchange(differed_, true))
     print_difference(input_, frame.number, *frame.verify);
 }

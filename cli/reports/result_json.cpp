@@ -194,6 +194,17 @@ void write_penetration(JsonWriter& json, const DetectResult& result, bool detail
   if (details) write_records(json, "penetrations", result.penetrations);
 }
 
+void write_other_answers(JsonWriter& json, const DetectResult& result, ContactKinds requested) {
+  for (const ContactKindInfo& of : other_kinds()) {
+    if (!contains(requested, of.kind)) continue;
+    const ListInfo& list = list_infos()[place_of_answer(of.kind)];
+    const ListRows rows = rows_of(result)[place_of_answer(of.kind)];
+    json.objects(list.name, std::views::iota(std::size_t{0}, rows.count), [&](std::size_t i) {
+      write_members(json, list.record, rows.data + i * list.record.bytes, false);
+    });
+  }
+}
+
 void write_manifolds(JsonWriter& json, const DetectResult& result) {
   json.objects("manifolds", result.manifolds, [&](const Manifold& manifold) {
     write_fields(json, manifold);

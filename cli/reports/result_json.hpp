@@ -29,6 +29,12 @@ void write_continuous_groups(JsonWriter& json, const DetectResult& result, bool 
 void write_proximity_groups(JsonWriter& json, const DetectResult& result, ProximityListing listing);
 /// `penetration`, `containment`, `contained_parts`, `curves` and, with `details`, `penetrations`.
 void write_penetration(JsonWriter& json, const DetectResult& result, bool details);
+/// The kinds of contacts without a form or a table of their own: those after penetration.
+inline std::span<const ContactKindInfo> other_kinds() {
+  return std::span(contact_kinds).subspan(4);
+}
+/// The lists of those that were requested.
+void write_other_answers(JsonWriter& json, const DetectResult& result, ContactKinds requested);
 /// `manifolds` with their points, and `ended_manifolds`.
 void write_manifolds(JsonWriter& json, const DetectResult& result);
 /// `colliding_vertices`, the paper's output.

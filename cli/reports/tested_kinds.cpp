@@ -16,15 +16,6 @@
 namespace supple::cli {
 namespace {
 
-struct NamedKind {
-  ContactKinds kind;
-  const char* name;
-};
-constexpr NamedKind kinds[] = {{ContactKinds::intersection, "intersections"},
-                               {ContactKinds::continuous, "continuous contacts"},
-                               {ContactKinds::proximity, "proximity"},
-                               {ContactKinds::penetration, "penetration"}};
-
 /// By `NothingToTest`.
 constexpr const char* reasons_in_words[] = {
     "there is no object",
@@ -40,7 +31,7 @@ constexpr const char* reasons_in_words[] = {
 };
 
 bool reads_lines(ContactKinds kind) {
-  return kind == ContactKinds::continuous || kind == ContactKinds::proximity;
+  return info_of(kind).shape != SearchedShape::triangles;
 }
 
 }  // namespace
@@ -67,8 +58,8 @@ void TestedKinds::add(const Frame& frame) {
     untested |= entry.kind;
     reasons_[entry.kind] = entry.reason;
   }
-  for (const auto& [kind, name] : kinds) {
-    if (contains(requested_, kind) && !contains(untested, kind)) tested_ |= kind;
+  for (const ContactKindInfo& of : contact_kinds) {
+    if (contains(requested_, of.kind) && !contains(untested, of.kind)) tested_ |= of.kind;
   }
   if (frame.turned.empty()) return;
   ++steps_with_turns_;
@@ -80,7 +71,8 @@ void TestedKinds::add(const Frame& frame) {
 std::vector<std::string> TestedKinds::faults() const {
   std::vector<std::pair<std::string, std::string>> reasons;  // names of kinds, and why they were not tested
   bool is_nothing_tested = true;
-  for (const auto& [kind, name] : kinds) {
+  for (const ContactKindInfo& of : contact_kinds) {
+    const auto [kind, name] = std::pair(of.kind, of.name);
     if (!contains(requested_, kind)) continue;
     if (was_tested(kind)) {
       is_nothing_tested = false;
@@ -149,7 +141,7 @@ std::vector<std::uint32_t> vertices_of(const TriangleMesh& mesh, const Contact& 
     const Triangle& t = mesh.triangles[triangle];
     return std::vector<std::uint32_t>(t.begin(), t.end());
   };
-  if constexpr (std::is_same_v<Contact, supple::Contact>) {
+  if constexpr (requires { contact.triangle_a; }) {
     return corners(side == 'a' ? contact.triangle_a : contact.triangle_b);
   } else {
     const auto& element = side == 'a' ? contact.element_a : contact.element_b;
@@ -173,8 +165,8 @@ bool SelfContacts::is_at_seam(const Contact& contact) const {
 }
 
 void SelfContacts::add(const DetectResult& result) {
-  const auto add_all = [&](const auto& contacts) {
-    for (const auto& contact : contacts) {
+  const auto add_all = [&]<class Contact>(std::span<const Contact> contacts) {
+    for (const Contact& contact : contacts) {
       if (contact.object_a != contact.object_b || input_.objects[contact.object_a.index].options.weld)
         continue;
       Counts& counts = counts_[contact.object_a];
@@ -182,9 +174,11 @@ void SelfContacts::add(const DetectResult& result) {
       if (is_at_seam(contact)) ++counts.at_seams;
     }
   };
-  add_all(result.contacts);
-  add_all(result.continuous_contacts);
-  add_all(result.proximity_pairs);
+  for_each_list([&]<class Row>(const ResultList<Row>&, auto member) {
+    if constexpr (
+        requires(Row row) { row.triangle_a; } || requires(Row row) { row.element_a; })
+      add_all(member(result));
+  });
 }
 
 std::vector<std::string> SelfContacts::notes() const {

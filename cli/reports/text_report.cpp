@@ -58,6 +58,9 @@ class TextReport : public Report {
           if (pair.count == 0) pair.most = -std::numeric_limits<double>::infinity();
           pair.add(group.contact_count, -smallest, frame.number);
         });
+    for (const ContactKindInfo& of : other_kinds())
+      for_each_group(of.kind, result.*of.groups,
+                     [](const ContactGroup& group, Summary& pair) { pair.add(group.contact_count); });
     for (const PenetrationGroup& group : result.penetration_groups) {
       if (group.penetration_count == 0) continue;
       Summary& pair = summaries_[ContactKinds::penetration][{group.a, group.b}];
@@ -174,6 +177,9 @@ class TextReport : public Report {
     if (tested_.was_tested(ContactKinds::penetration)) print_penetrations();
     if (tested_.was_tested(ContactKinds::continuous)) print_impacts();
     if (tested_.was_tested(ContactKinds::proximity)) print_near();
+    for (const ContactKindInfo& of : other_kinds()) {
+      if (tested_.was_tested(of.kind)) print_others(of.kind);
+    }
     for (std::vector<std::string> lines : {tested_.faults(), self_contacts_.notes()}) {
       for (std::string& line : lines) {
         line.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(line.front())));
@@ -265,6 +271,15 @@ class TextReport : public Report {
     print_table(pairs, "--csv", [](const Summary& pair) {
       return fmt::format("{:>16} {:>24}", grouped(pair.count), 0 - pair.most);
     });
+    fmt::print("\n");
+  }
+
+  void print_others(ContactKinds kind) {
+    const char* const item = list_infos()[place_of_answer(kind)].item;
+    if (summaries_[kind].empty()) return fmt::print("There is no {}.\n\n", item);
+    fmt::print("{:<20} {:<20} {:>8} {:>16}\n", "object", "and", "frames", fmt::format("{}s", item));
+    print_table(summaries_[kind], "--csv",
+                [](const Summary& pair) { return fmt::format("{:>16}", grouped(pair.count)); });
     fmt::print("\n");
   }
 

@@ -121,7 +121,7 @@ class DistributedScene::Implementation {
   bool reports_all(ObjectId a, ObjectId b);
   int rank_of_pair(ObjectId a, ObjectId b) const;
   FoundLists& lists_of(ObjectId a);
-  void send_pair(PairList list, ObjectId p, ObjectId q);
+  void send_pair(std::size_t list, ObjectId p, ObjectId q);
   struct PointQuery;
   struct Candidate;
   class SeenClusters;
@@ -129,8 +129,7 @@ class DistributedScene::Implementation {
   void need_clusters_near(std::vector<PointQuery>& points, const SeenClusters& seen);
   void send_nearest(std::span<const PointQuery> points, const ClosestOptions& closest_options);
   static ClosestPoint nearest_of(std::span<const Candidate> candidates, const Vec3d& point);
-  void send_groups(const DetectResult& found, const char* name, std::span<const ContactGroup> groups,
-                   PairList events);
+  void send_groups(const DetectResult& found, const ContactKindInfo& kind);
   void send_all(const DetectResult& found, const char* name);
   void send_results();
   bool has_pair_to_test(ContactKinds kind);
@@ -167,7 +166,7 @@ class DistributedScene::Implementation {
   BroadPhase object_phase_{{.threads = 1}}, cluster_phase_{{.threads = 1}};
   FoundLists lists_;
   std::map<int, FoundLists> outgoing_;        // by rank
-  std::array<PairCache, pair_lists> events_;  // by `PairList`
+  std::array<PairCache, pair_lists> events_;  // of the lists of pairs
   DetectResult result_;
   bool has_detected_ = false;  // the last call on this rank was a whole `detect`
   std::vector<UntestedKind> untested_;

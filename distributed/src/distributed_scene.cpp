@@ -186,10 +186,9 @@ const DetectResult& DistributedScene::Implementation::detect(const DetectRequest
   });
   // From here on, nothing may run out of memory on one rank.
   for (std::size_t list = 0; list < pair_lists; ++list) events_[list].update(lists_.pairs[list]);
-  result_.volume_events = events_[0].events();
-  result_.contact_events = events_[1].events();
-  result_.proximity_events = events_[2].events();
-  result_.penetration_events = events_[3].events();
+  result_.volume_events = events_[of_volumes].events();
+  for (const ContactKindInfo& kind : contact_kinds)
+    result_.*kind.events = events_[pair_list_of(kind)].events();
   result_.stats.total_seconds = total.lap();
   gather_step_stats();
   ++step_;

@@ -62,16 +62,6 @@ std::size_t length_of(const Reference& range, const std::byte* row) {
   return length;
 }
 
-template <class Record>
-void list_groups(std::span<const Record> records, std::vector<ContactGroup>& groups) {
-  groups.clear();
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (groups.empty() || groups.back().a != records[i].object_a || groups.back().b != records[i].object_b)
-      groups.push_back({records[i].object_a, records[i].object_b, static_cast<std::uint32_t>(i), 0});
-    ++groups.back().contact_count;
-  }
-}
-
 }  // namespace
 
 bool is_before(const RecordInfo& record, const std::byte* p, const std::byte* q) {
@@ -226,20 +216,28 @@ void FoundLists::sort(std::size_t list) {
   }
 }
 
+void FoundLists::list_groups(std::size_t list, std::vector<ContactGroup>& groups) {
+  groups.clear();
+  for (std::uint32_t i = 0; i < count(list); ++i) {
+    const auto [a, b] = objects_of(list_infos()[list].record, row(list, i));
+    if (groups.empty() || groups.back().a != a || groups.back().b != b) groups.push_back({a, b, i, 0});
+    ++groups.back().contact_count;
+  }
+}
+
 void FoundLists::list(DetectResult& result) {
   std::vector<ListRows> rows;
   for (std::size_t list = 0; list < rows_.size(); ++list) rows.push_back({rows_[list].data(), count(list)});
   set_rows(result, rows);
-  list_groups(result.contacts, groups_);
-  list_groups(result.continuous_contacts, continuous_groups_);
-  list_groups(result.proximity_pairs, proximity_groups_);
-  for (std::size_t list = 0; list < rows_.size(); ++list) {
-    for (std::uint32_t i = 0; i < count(list); ++i) count_contacts(list, i, groups_, false);
+  for (std::size_t k = 0; k < contact_kinds.size(); ++k) {
+    if (contact_kinds[k].groups == nullptr) continue;
+    list_groups(place_of_answer(contact_kinds[k].kind), groups_[k]);
+    result.*contact_kinds[k].groups = groups_[k];
   }
-  result.object_pairs = pairs[static_cast<std::size_t>(PairList::volumes)];
-  result.groups = groups_;
-  result.continuous_groups = continuous_groups_;
-  result.proximity_groups = proximity_groups_;
+  for (std::size_t list = 0; list < rows_.size(); ++list) {
+    for (std::uint32_t i = 0; i < count(list); ++i) count_contacts(list, i, result.groups, false);
+  }
+  result.object_pairs = pairs[of_volumes];
   result.non_finite_vertices = non_finite_vertices;
 }
 

@@ -8,15 +8,18 @@
 
 #include "bytes.hpp"
 #include "renumbered.hpp"
+#include "scene/pair_cache.hpp"
 #include "supple/record_info.hpp"
 #include "supple/result.hpp"
 
 namespace supple {
 
-/// Pairs of different objects whose changes are events: with volumes that overlap, with contacts, within
-/// their margins, and one inside the other.
-enum class PairList : std::uint8_t { volumes, contacts, margins, inside };
-inline constexpr std::size_t pair_lists = 4;
+/// Lists of pairs of different objects whose changes are events: those with volumes that overlap, then those
+/// with contacts of a kind.
+inline constexpr std::size_t of_volumes = 0, pair_lists = 1 + events_of_kinds;
+constexpr std::size_t pair_list_of(const ContactKindInfo& kind) {
+  return 1 + place_of_events(kind);
+}
 
 /// The lists of a result, with memory of their own and the user's numbers. `list_infos` says what a row is
 /// and to which rows of other lists it refers; a list of rows to which others refer has the order of these.
@@ -24,7 +27,7 @@ class FoundLists {
  public:
   FoundLists() : rows_(list_infos().size()) {}
 
-  std::array<std::vector<ObjectPair>, pair_lists> pairs;  ///< by `PairList`
+  std::array<std::vector<ObjectPair>, pair_lists> pairs;
   std::vector<NonFiniteVertex> non_finite_vertices;
 
   /// Adds a row of a list, and all to which it refers, with other numbers. `from` are the rows of a result,
@@ -51,10 +54,11 @@ class FoundLists {
   }
   void renumber(std::size_t list, std::size_t i, const Numbers& numbers);
   void sort(std::size_t list);
+  void list_groups(std::size_t list, std::vector<ContactGroup>& groups);
   void count_contacts(std::size_t list, std::size_t i, std::span<const ContactGroup> groups, bool from_all);
 
   std::vector<std::vector<std::byte>> rows_;  // by list
-  std::vector<ContactGroup> groups_, continuous_groups_, proximity_groups_;
+  std::array<std::vector<ContactGroup>, contact_kinds.size()> groups_;
 };
 
 /// Whether a row comes before another one in canonical order: by the members of its key.

@@ -68,8 +68,8 @@ bool DistributedScene::Implementation::is_mine(const ListInfo& list, const std::
     std::memcpy(element.data(), row + field.offset, field.bytes());
     const FeatureKind kind =
         names == Names::triangle ? FeatureKind::face : list.record.kind_of_element(row, side);
-    const Vec3d lowest =
-        lower_corner(objects[side == 'b' ? 1 : 0], kind, element, list.answers == ContactKinds::continuous);
+    const Vec3d lowest = lower_corner(objects[side == 'b' ? 1 : 0], kind, element,
+                                      info_of(list.answers).shape == SearchedShape::paths);
     for (int axis = 0; axis < 3; ++axis) corner[axis] = std::max(corner[axis], lowest[axis]);
   }
   return region_.contains(corner);
@@ -102,18 +102,17 @@ FoundLists& DistributedScene::Implementation::lists_of(ObjectId a) {
   return outgoing_[ranks.rank()];
 }
 
-void DistributedScene::Implementation::send_pair(PairList list, ObjectId p, ObjectId q) {
+void DistributedScene::Implementation::send_pair(std::size_t list, ObjectId p, ObjectId q) {
   const auto [a, b] = std::minmax(p, q);
-  if (a != b) outgoing_[rank_of_pair(a, b)].pairs[static_cast<std::size_t>(list)].push_back({a, b});
+  if (a != b) outgoing_[rank_of_pair(a, b)].pairs[list].push_back({a, b});
 }
 
 /// Adds the rows of each group that this rank reports.
-void DistributedScene::Implementation::send_groups(const DetectResult& found, const char* name,
-                                                   std::span<const ContactGroup> groups, PairList events) {
+void DistributedScene::Implementation::send_groups(const DetectResult& found, const ContactKindInfo& kind) {
   const std::vector<ListRows> rows = rows_of(found);
-  const std::size_t place = place_of_list(name);
+  const std::size_t place = place_of_answer(kind.kind);
   const ListInfo& list = list_infos()[place];
-  for (const ContactGroup& group : groups) {
+  for (const ContactGroup& group : found.*kind.groups) {
     const bool is_sure = reports_all(group.a, group.b);
     FoundLists* lists = nullptr;
     for (std::size_t i = group.first_contact; i < group.first_contact + group.contact_count; ++i) {
@@ -121,7 +120,7 @@ void DistributedScene::Implementation::send_groups(const DetectResult& found, co
       if (lists == nullptr) lists = &lists_of(user(group.a));
       lists->add(place, i, rows, found.groups, local_);
     }
-    if (lists != nullptr) send_pair(events, user(group.a), user(group.b));
+    if (lists != nullptr) send_pair(pair_list_of(kind), user(group.a), user(group.b));
   }
 }
 
@@ -147,16 +146,15 @@ void DistributedScene::Implementation::send_results() {
   DetectResult found;
   detection_.list(found);
   clear_lists();
-  send_groups(found, "contacts", found.groups, PairList::contacts);
-  send_groups(found, "continuous_contacts", found.continuous_groups, PairList::contacts);
-  send_groups(found, "proximity_pairs", found.proximity_groups, PairList::margins);
+  for (const ContactKindInfo& kind : contact_kinds) {
+    if (kind.groups != nullptr) send_groups(found, kind);
+  }
   for (const char* const list : {"penetration_groups", "contained_parts", "curves"}) send_all(found, list);
   for (const PenetrationGroup& group : found.penetration_groups) {
-    if (group.penetration_count > 0) send_pair(PairList::inside, user(group.a), user(group.b));
+    if (group.penetration_count > 0)
+      send_pair(pair_list_of(info_of(ContactKinds::penetration)), user(group.a), user(group.b));
   }
-  for (const ContainedPart& part : found.contained_parts)
-    send_pair(PairList::inside, user(part.inner), user(part.outer));
-  for (const auto& [a, b] : object_pairs_) send_pair(PairList::volumes, a, b);
+  for (const auto& [a, b] : object_pairs_) send_pair(of_volumes, a, b);
   for (const auto& [id, object] : homes_) {
     FoundLists& lists = outgoing_[options.results == ResultPlacement::gathered ? 0 : object.first_home];
     object.list_non_finite(question_.shapes(), lists.non_finite_vertices);

@@ -22,15 +22,12 @@ bool DistributedScene::Implementation::has_pair_to_test(ContactKinds kind) {
     for (const auto& [id, object] : homes_) {
       if (object.first_home != ranks.rank()) continue;
       const ObjectOptions& of = object.options;
-      const TestableObject testable{
-          .id = id,
-          .takes_part = object.has_finite_face(),
-          .has_quality = (kind != ContactKinds::continuous || object.has_motion()) &&
-                         (kind != ContactKinds::proximity || of.margin > 0) &&
-                         (kind != ContactKinds::penetration || of.solid),
-          .is_static = of.is_static,
-          .group = of.group,
-          .mask = of.mask};
+      const TestableObject testable{.id = id,
+                                    .takes_part = object.has_finite_face(),
+                                    .has_quality = has_quality(kind, of, object.has_motion()),
+                                    .is_static = of.is_static,
+                                    .group = of.group,
+                                    .mask = of.mask};
       if (sent[{testable.takes_part, testable.has_quality, of.is_static, of.group, of.mask}]++ < 2)
         outbox_.to(0).put(testable);
     }
@@ -61,16 +58,14 @@ TestableObject DistributedScene::Implementation::testable(ContactKinds kind, con
 /// Collective: the requested kinds that found nothing and had nothing to test; the same on all ranks.
 void DistributedScene::Implementation::list_untested() {
   untested_.clear();
-  std::vector<double> counts{double(result_.contacts.size()), double(result_.continuous_contacts.size()),
-                             double(result_.proximity_pairs.size()),
-                             double(result_.penetration_groups.size() + result_.contained_parts.size())};
-  ranks.largest(counts);
-  const ContactKinds kinds[] = {ContactKinds::intersection, ContactKinds::continuous, ContactKinds::proximity,
-                                ContactKinds::penetration};
+  std::vector<double> are_found;
+  for (const ContactKindInfo& of : contact_kinds) are_found.push_back(of.is_in(result_) ? 1 : 0);
+  ranks.largest(are_found);
   std::vector<ContactKinds> open;
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (contains(question_.contacts, kinds[k]) && counts[k] == 0 && !has_pair_to_test(kinds[k]))
-      open.push_back(kinds[k]);
+  for (std::size_t k = 0; k < contact_kinds.size(); ++k) {
+    const ContactKinds kind = contact_kinds[k].kind;
+    if (contains(question_.contacts, kind) && are_found[k] == 0 && !has_pair_to_test(kind))
+      open.push_back(kind);
   }
   if (open.empty()) return;
   by_objects_ = true;

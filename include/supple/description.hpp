@@ -60,6 +60,35 @@ std::string list_of_words(std::string_view separator = ", ") {
 template <class Enum>
 inline constexpr std::array<const char*, 0> set_words{};
 
+namespace detail {
+
+/// The texts of all sets with the words of their members, by value.
+template <class Enum>
+constexpr auto texts_of_sets() {
+  constexpr auto members = set_words<Enum>.size() - 1;
+  std::array<std::array<char, 128>, std::size_t{1} << members> texts{};
+  for (std::size_t set = 0; set < texts.size(); ++set) {
+    std::size_t end = 0;
+    for (std::size_t word = set == 0 ? 0 : 1; word <= (set == 0 ? 0 : members); ++word) {
+      if (set != 0 && (set >> (word - 1) & 1) == 0) continue;
+      if (end > 0) texts[set][end++] = ',';
+      for (const char letter : std::string_view(set_words<Enum>[word])) texts[set][end++] = letter;
+    }
+  }
+  return texts;
+}
+template <class Enum>
+inline constexpr auto texts = texts_of_sets<Enum>();
+
+template <class Enum>
+constexpr auto words_of_sets() {
+  std::array<const char*, texts<Enum>.size()> words{};
+  for (std::size_t set = 0; set < words.size(); ++set) words[set] = texts<Enum>[set].data();
+  return words;
+}
+
+}  // namespace detail
+
 /// An enumeration whose values are sets of members that have words.
 template <class Enum>
 concept WordedSet = Worded<Enum> &&(set_words<Enum>.size() > 0);

@@ -25,25 +25,10 @@ inline constexpr std::array words<RegionSphereTest>{"arvo", "grown_box"};
 template <>
 inline constexpr std::array words<Descent>{"both_sides", "one_side_first"};
 template <>
-inline constexpr std::array words<ContactKinds>{"none",
-                                                "intersection",
-                                                "continuous",
-                                                "intersection,continuous",
-                                                "proximity",
-                                                "intersection,proximity",
-                                                "continuous,proximity",
-                                                "intersection,continuous,proximity",
-                                                "penetration",
-                                                "intersection,penetration",
-                                                "continuous,penetration",
-                                                "intersection,continuous,penetration",
-                                                "proximity,penetration",
-                                                "intersection,proximity,penetration",
-                                                "continuous,proximity,penetration",
-                                                "intersection,continuous,proximity,penetration"};
-template <>
 inline constexpr std::array set_words<ContactKinds>{"none", "intersection", "continuous", "proximity",
                                                     "penetration"};
+template <>
+inline constexpr std::array words<ContactKinds> = detail::words_of_sets<ContactKinds>();
 template <>
 inline constexpr std::array words<ProximityListing>{"features", "elements"};
 template <>

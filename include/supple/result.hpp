@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -202,6 +204,47 @@ struct DetectResult {
                                   : contact_points.subspan(contact.first_point, contact.point_count);
   }
 };
+
+/// What a search for a kind of contacts reads of objects.
+enum class SearchedShape : std::uint8_t {
+  triangles,  ///< at the current positions
+  paths,      ///< triangles, edges and points on their paths within the step
+  margins,    ///< triangles, edges and points at the current positions, with their margins
+};
+
+/// A kind of contacts as data, for code that treats all kinds alike: see `contact_kinds`.
+struct ContactKindInfo {
+  ContactKinds kind = ContactKinds::none;
+  const char* name = "";  ///< in words
+  SearchedShape shape = SearchedShape::triangles;
+  /// What each object lacks when no object has what the kind needs of one of two; `no_elements` when it needs
+  /// nothing else.
+  NothingToTest lack = NothingToTest::no_elements;
+  PairEvents DetectResult::*events = nullptr;
+  /// The groups and their name; null for penetration, which has groups of another type.
+  std::span<const ContactGroup> DetectResult::*groups = nullptr;
+  const char* groups_name = "";
+
+  bool is_in(const DetectResult& result) const {
+    return groups != nullptr ? !(result.*groups).empty() : !result.penetration_groups.empty();
+  }
+};
+
+/// All kinds of contacts, in the order of their bits; `info_of` returns the entry of one.
+inline constexpr std::array<ContactKindInfo, 4> contact_kinds{
+    {{ContactKinds::intersection, "intersections", SearchedShape::triangles, NothingToTest::no_elements,
+      &DetectResult::contact_events, &DetectResult::groups, "groups"},
+     {ContactKinds::continuous, "continuous contacts", SearchedShape::paths, NothingToTest::no_motion,
+      &DetectResult::contact_events, &DetectResult::continuous_groups, "continuous_groups"},
+     {ContactKinds::proximity, "proximity", SearchedShape::margins, NothingToTest::no_margin,
+      &DetectResult::proximity_events, &DetectResult::proximity_groups, "proximity_groups"},
+     {ContactKinds::penetration, "penetration", SearchedShape::triangles, NothingToTest::no_solid,
+      &DetectResult::penetration_events}}};
+
+/// The entry of one kind in `contact_kinds`.
+constexpr const ContactKindInfo& info_of(ContactKinds kind) {
+  return contact_kinds[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(kind)))];
+}
 
 /// One region of the scene octree, for inspection and drawing.
 struct SceneRegion {

@@ -25,10 +25,8 @@ using DetectObserver = std::function<void(const Scene&, const DetectRequest&)>;
 
 namespace detail {
 
-ElementVertices vertices_of(const Scene& scene, const Contact& contact, ContactSide side);
-ElementVertices vertices_of(const Scene& scene, const ContinuousContact& contact, ContactSide side);
-ElementVertices vertices_of(const Scene& scene, const ProximityPair& pair, ContactSide side);
-ElementVertices vertices_of(const Scene& scene, const LimitingPair& pair, ContactSide side);
+ElementVertices vertices_of(const Scene& scene, ObjectId id, FeatureKind kind,
+                            const std::array<std::uint32_t, 2>& element);
 using PairWeights = std::array<std::array<double, 3>, 2>;
 PairWeights weights_of(const Scene& scene, const Contact& contact);
 PairWeights weights_of(const Scene&, const auto& pair) {
@@ -290,12 +288,24 @@ class Scene {
   /// The position that the exact tests use: with transforms and translations. Throws `Error` when there is no
   /// such vertex.
   Vec3d position(ObjectId object, std::uint32_t vertex) const;
-  /// The vertex ids of one side of a `Contact`, `ContinuousContact`, `ProximityPair` or `LimitingPair`, O(1),
+  /// The vertex ids of one side of a record with a triangle or an element on each side, O(1),
   /// in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the
   /// order of its corners. Throws `Error` when the object of a triangle was removed.
   template <class Pair>
   ElementVertices vertices_of(const Pair& pair, ContactSide side) const {
-    return detail::vertices_of(*this, pair, side);
+    const bool is_a = side == ContactSide::a;
+    const ObjectId object = is_a ? pair.object_a : pair.object_b;
+    if constexpr (requires { pair.triangle_a; }) {
+      return detail::vertices_of(*this, object, FeatureKind::face,
+                                 {is_a ? pair.triangle_a : pair.triangle_b});
+    } else {
+      FeatureKind kind;
+      if constexpr (requires { pair.kind_a; })
+        kind = is_a ? pair.kind_a : pair.kind_b;
+      else
+        kind = feature_kinds(pair.kind)[is_a ? 0 : 1];
+      return detail::vertices_of(*this, object, kind, is_a ? pair.element_a : pair.element_b);
+    }
   }
   /// Calls `function(object, vertex, weight)` for each vertex of a pair: first those of a, then those of b.
   /// The weights are the barycentric coordinates of the closest or touching points, positive for a and

@@ -57,6 +57,11 @@ std::size_t place_of_list(std::string_view name) {
   return static_cast<std::size_t>(found - list_infos().begin());
 }
 
+std::size_t place_of_answer(ContactKinds kind) {
+  const auto found = std::ranges::find(list_infos(), kind, &ListInfo::answers);
+  return static_cast<std::size_t>(found - list_infos().begin());
+}
+
 void set_rows(DetectResult& result, std::span<const ListRows> lists) {
   std::size_t i = 0;
   for_each_list([&]<class Row>(const ResultList<Row>&, auto member) {

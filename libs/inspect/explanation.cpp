@@ -312,7 +312,7 @@ PairExplanation explain_in_order(const World& world, const Detection& detection,
   if (!same_object &&
       !std::binary_search(detection.pairs().pairs().begin(), detection.pairs().pairs().end(), ids))
     return objects_apart(a, b, world.options.bounding_volume,
-                         question.is_continuous() || question.has_proximity());
+                         question.reads(SearchedShape::paths) || question.reads(SearchedShape::margins));
   const ObjectPairView pair = search_view(world, question, job);
   const auto [at, are_apart] = last_children(pair, triangles);
   if (are_apart) return cells_apart(pair, at, a, b);

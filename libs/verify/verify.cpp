@@ -124,7 +124,7 @@ VerifyReport verify(const World& world, const Question& question, const DetectRe
     PairVerification verification{world, question, result, pair, report};
     if (question.has_intersections()) verification.verify_contacts(of_contacts);
     if (question.is_continuous()) verification.verify_impacts(of_impacts);
-    if (question.has_proximity()) verification.verify_proximity(of_proximity);
+    if (question.searches(ContactKinds::proximity)) verification.verify_proximity(of_proximity);
     if (question.has_penetration()) verification.verify_penetrations();
     verify_manifolds(pair, {&verification.a, &verification.b}, result, report);
   }

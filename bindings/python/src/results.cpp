@@ -11,17 +11,14 @@ namespace {
 /// The lists of groups, which `for_each_list` leaves out because they follow from the records.
 template <class Found, class Visit>
 void visit_other_lists(Found& found, const Visit& visit) {
-  visit("groups", found.groups);
-  visit("continuous_groups", found.continuous_groups);
-  visit("proximity_groups", found.proximity_groups);
+  for (const ContactKindInfo& kind : contact_kinds) {
+    if (kind.groups != nullptr) visit(kind.groups_name, found.*kind.groups);
+  }
   visit("ended_manifolds", found.ended_manifolds);
   visit("non_finite_vertices", found.non_finite_vertices);
   visit("untested", found.untested);
-  visit("events/volume_stay", found.volume_events.stay);
-  visit("events/narrow_phase_stay", found.narrow_phase_events.stay);
-  visit("events/contact_stay", found.contact_events.stay);
-  visit("events/proximity_stay", found.proximity_events.stay);
-  visit("events/penetration_stay", found.penetration_events.stay);
+  for_each_events(
+      [&](const auto&, const auto&, const char* stay, auto member) { visit(stay, member(found).stay); });
 }
 
 /// Calls `visit(name, list)` for all lists of a result.
@@ -122,7 +119,11 @@ void bind_results(nb::module_& module) {
 
   module.def("lists", [] {
     nb::dict lists;
-    for (const ListInfo& list : list_infos()) lists[list.name] = nb::make_tuple(list.item, list.doc);
+    for (const ListInfo& list : list_infos()) {
+      const bool is_answer = list.answers != ContactKinds::none;
+      lists[list.name] = nb::make_tuple(list.item, list.doc, is_answer ? word_of(list.answers) : "",
+                                        is_answer ? info_of(list.answers).groups_name : "");
+    }
     return lists;
   });
   module.def("layouts", [] {

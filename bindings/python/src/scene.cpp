@@ -38,6 +38,16 @@ nb::object vertices_of(const Scene& scene, const List<std::uint8_t>& bytes) {
   return to_own_array<std::uint32_t, 2, 3>(std::move(vertices));
 }
 
+/// Calls `visit(Row{})` for each record of a list with a triangle or an element on each side.
+void for_each_pair_record(const auto& visit) {
+  for_each_list([&]<class Row>(const ResultList<Row>&, auto) {
+    if constexpr (
+        requires(Row row) { row.triangle_a; } || requires(Row row) { row.element_a; })
+      visit(Row{});
+  });
+  visit(LimitingPair{});
+}
+
 nb::object positions_of_object(const Scene& scene, ObjectId id) {
   std::vector<Vec3d> positions(scene.vertex_count(id));
   for (std::uint32_t v = 0; v < positions.size(); ++v) positions[v] = scene.position(id, v);
@@ -57,10 +67,11 @@ nb::object triangles_of_object(const Scene& scene, ObjectId id) {
 
 nb::object vertices_of_records(const Scene& scene, const std::string& record,
                                const List<std::uint8_t>& rows) {
-  if (record == "Contact") return vertices_of<Contact>(scene, rows);
-  if (record == "ContinuousContact") return vertices_of<ContinuousContact>(scene, rows);
-  if (record == "ProximityPair") return vertices_of<ProximityPair>(scene, rows);
-  if (record == "LimitingPair") return vertices_of<LimitingPair>(scene, rows);
+  nb::object vertices;
+  for_each_pair_record([&]<class Row>(const Row&) {
+    if (record == Description<Row>::name) vertices = vertices_of<Row>(scene, rows);
+  });
+  if (vertices.is_valid()) return vertices;
   throw Error("vertices: a " + record + " has no two elements");
 }
 
@@ -114,6 +125,11 @@ void bind_scene(nb::module_& module) {
       .def("request", [](Stop& stop) { stop.source.request_stop(); })
       .def_prop_ro("requested", [](const Stop& stop) { return stop.source.stop_requested(); });
 
+  module.def("records_with_vertices", [] {
+    nb::list names;
+    for_each_pair_record([&]<class Row>(const Row&) { names.append(Description<Row>::name); });
+    return names;
+  });
   module.def("rotation_of_quaternion", [](double x, double y, double z, double w) {
     const auto& r = RigidTransform::from_quaternion(x, y, z, w).rotation;
     return to_own_array<double>(std::vector<double>(r.begin(), r.end()));

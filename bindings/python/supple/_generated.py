@@ -315,6 +315,8 @@ CONTRACTS = {
         'Statistics of the last call.',
     'BroadPhase::validate':
         'Checks every invariant. Returns an empty string, or a description of the first error. For tests.',
+    'ContactKindInfo::is_in':
+        'See `ContactKindInfo::is_in` in supple/result.hpp.',
     'DetectResult::contacts_of':
         'See `DetectResult::contacts_of` in supple/result.hpp.',
     'DetectResult::continuous_contacts_of':
@@ -552,7 +554,7 @@ CONTRACTS = {
     'Scene::vertex_count':
         'of its mesh',
     'Scene::vertices_of':
-        'The vertex ids of one side of a `Contact`, `ContinuousContact`, `ProximityPair` or `LimitingPair`, O(1), in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners. Throws `Error` when the object of a triangle was removed.',
+        'The vertex ids of one side of a record with a triangle or an element on each side, O(1), in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners. Throws `Error` when the object of a triangle was removed.',
     'SceneInspector::bounds':
         'The box of the object in the last `detect`; empty when no vertex is finite.',
     'SceneInspector::candidates':
@@ -677,12 +679,16 @@ CONTRACTS = {
         'Decides the same question by exact algebra, for checking: Sturm sequences of polynomials with integer coefficients of any size. It shares no code with `first_impact` or `Scene.detect`, at any separation. Throws `Error` when `min_separation` is negative or not finite.\n\nTakes about 0.5 µs for most elements that stay apart, 0.1 to 1 ms for others, and seconds or more when coordinates range from 1e-300 to 1e300. It always ends.',
     'first_impact':
         'The first impact within the step, or nothing when the elements stay apart, as exact arithmetic decides on the given coordinates. All finite coordinates and all motions are allowed: also motions within one plane, parallel edges, degenerate faces, and no motion. Elements with a coordinate that is not finite touch nothing.\n\nThrows `Error` when an option is out of its range. Takes about 0.1 µs for elements that stay apart and 0.3 µs for others. When only exact arithmetic can decide, it takes a few microseconds, or a few hundred with a separation, and allocates memory. Coordinates that differ by more than 2^100 in size can then take milliseconds; docs/guarantees.md has a table.',
+    'for_each_events':
+        'Calls `visitor(begin, end, stay, member)` for the events of each set of pairs: with the lists of the pairs that begin and end, the name of the list of those that stay, and `member(result)`, the `PairEvents`.',
     'for_each_field':
         'Calls `visitor(field)` for each member, in the order of the structure.',
     'for_each_leaf':
         'Calls `visitor(field, values...)` for each leaf, in order. A leaf is a member whose type has no description; members whose type has one are visited recursively. All structures have the same type, constant or not.',
     'for_each_list':
         'Calls `visitor(list, member)` for each list with records of its own; `member(result)` is the list of a `DetectResult` or of a structure with members of the same names. Lists of groups follow from the records.',
+    'info_of':
+        'The entry of one kind in `contact_kinds`.',
     'intersect_triangles':
         "Makes the same decision and finds the extreme points of what the triangles share. Each point has the feature of a and the feature of b whose relative interiors meet there. The list is complete and has no duplicates.\n\nWhen corners of a triangle coincide, the smaller index names the point. When corners are collinear, the edge between the two outer corners names the segment.\n\nA point has one extreme point, a segment two, a polygon (of coplanar triangles) three to six. The points of a segment are in ascending order of (on_a, on_b). A polygon is in convex order; it starts at the smallest (on_a, on_b) and continues with the smaller of its two neighbours.\n\nCost: about 100 ns more than the decision for each point that is not a vertex.\n\nPositions: a vertex has its own bits (those of a where two vertices meet). Any other point lies on an edge. Its error along each axis is at most 2^-44 of the edge's extent plus half a unit in the last place, and it is never outside the box of either triangle. It depends on that edge and the opposite edge or face alone, not on the direction of the edge or the order of the triangles, so triangles that share an edge report the same bits there. Another order of the face's corners can change the last bits.\n\nNormal: the direction of the shortest translation of triangle a that separates the triangles: afterwards a plane perpendicular to the normal has each triangle on one of its closed sides, a on the side to which the normal points.\n- Triangles that cross in a segment: the direction of least penetration among the normals of both and the cross products of an edge of each, with either sign.\n- Triangles that touch, in a point or a segment: no translation is needed; the normal is the one of those directions whose plane separates the triangles. For a vertex on a face that is the normal of the face.\n- Coplanar triangles: the common normal with the sign of the normal of b (counter-clockwise corners).\n- A triangle without area, or with an angle below 2^-20: it acts as the segment or the point that it spans. When both lie on one line, the normal is perpendicular to the line. When both are one point, the normal is the x axis.\nThe normal is rounded: computed in double, in a fixed order of operations, with the same bits on every machine. Two edges at an angle below 2^-20 count as parallel, and triangles within 2^-32 of their size from a common plane count as coplanar.",
     'is_open_at_seams':
@@ -725,6 +731,8 @@ CONTRACTS = {
         'See `operator|` in supple/options.hpp.',
     'operator|=':
         'See `operator|=` in supple/options.hpp.',
+    'place_of_answer':
+        'The place of the list that answers a kind of contacts.',
     'place_of_list':
         'The place of a list in `list_infos`. Throws `Error` when there is no list with this name.',
     'point_edge_distance':

@@ -13,15 +13,12 @@ if TYPE_CHECKING:
 else:
     ResultLists = object
 
+_LISTS: dict[str, tuple[str, str, str, str]] = _core.lists()
 #: Short names of lists.
-SHORT = {
-    "continuous": "continuous_contacts",
-    "proximity": "proximity_pairs",
-    "intersection": "contacts",
-    "penetration": "penetrations",
-}
-ANSWERS = ("contacts", "continuous_contacts", "proximity_pairs", "penetrations")
-_LISTS: dict[str, tuple[str, str]] = _core.lists()
+SHORT = {kind: name for name, (_, _, kind, _) in _LISTS.items() if kind}
+ANSWERS = tuple(SHORT.values())
+#: The lists of groups by the lists of their contacts.
+_GROUPS = {name: groups for name, (_, _, _, groups) in _LISTS.items() if groups}
 _NAMES: dict[str, int] = _core.Result().counts()
 
 
@@ -76,17 +73,12 @@ class _Lists(ResultLists):
             raise Error(
                 "only a result of detect has the pairs of objects; its lists have the columns object_a and object_b"
             )
-        for groups, name in (
-            ("groups", "contacts"),
-            ("continuous_groups", "continuous_contacts"),
-            ("proximity_groups", "proximity_pairs"),
-        ):
-            for group in self._list(groups):
+        names = [name for name in PairContacts._fields if name in _GROUPS]
+        for name in names:
+            for group in self._list(_GROUPS[name]):
                 rows = self._list(name)[group.first_contact : group.first_contact + group.contact_count]
                 parts.setdefault((int(group.a), int(group.b)), {})[name] = rows
-        nothing = {
-            name: self._list(name)[:0] for name in ("contacts", "continuous_contacts", "proximity_pairs")
-        }
+        nothing = {name: self._list(name)[:0] for name in names}
         for (a, b), found in sorted(parts.items()):
             yield PairContacts(a, b, **{**nothing, **found})
 
@@ -169,7 +161,7 @@ class Result(_Lists):
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{name}</td><td>{count}</td><td>{_LISTS.get(name, ('', ''))[1]}</td></tr>"
+            f"<tr><td>{name}</td><td>{count}</td><td>{_LISTS.get(name, ('', '', '', ''))[1]}</td></tr>"
             for name, count in self._counts().items()
             if count and "/" not in name
         )

@@ -45,7 +45,7 @@ _fields = {
     for name, (_, members) in _core.layouts().items()
 }
 #: Records with an element of each side, whose vertices a scene knows.
-_WITH_VERTICES = ("Contact", "ContinuousContact", "ProximityPair", "LimitingPair")
+_WITH_VERTICES = tuple(_core.records_with_vertices())
 _SIDES = ("barycentric", "element", "object", "point", "triangle", "kind", "feature_kind")
 
 

@@ -33,69 +33,58 @@ bool Detection::run(const Question& question, std::uint64_t max_contacts, const 
   stats.triangles_rebuilt = rebuilt.triangles;
   stats.rebuild_seconds = stage.lap();
   const PassInput input{pairs_.jobs(), world_.versions(), max_contacts, stop, world_.parallel};
-  if (question_.searches_at_rest() && !find_contacts(input, stats)) return false;
-  if (question_.is_continuous() && !find_impacts(input, stats)) return false;
-  if (question_.has_proximity() && !find_proximity(input, stats)) return false;
-  stage.lap();
-  if (question_.has_penetration()) {
-    if (!find_penetrations(input, stats)) return false;
-    stats.penetration_seconds = stage.lap();
-  }
+  DetectResult found;
+  const auto find_all = [&](auto&... pass) { return (find(pass, input, found, stats) && ...); };
+  if (!std::apply(find_all, passes_)) return false;
   list_non_finite();
   return true;
 }
 
-bool Detection::find_contacts(const PassInput& input, StepStats& stats) {
-  intersected_objects_.resize(world_.slot_count());
+/// Runs the pass of a kind that the question has. `found` are the lists of the passes before it. Returns
+/// false when it was stopped.
+template <class Kind>
+bool Detection::find(Kind& pass, const PassInput& input, DetectResult& found, StepStats& stats) {
+  if (!question_.searches(Kind::answers)) return true;
+  Timer timer;
+  auto& objects = std::get<std::vector<typename Kind::Object>>(objects_);
+  list_objects(Kind::answers, objects);
+  if (!pass.run(input, objects, Kind::search_of(question_, found), stats)) return false;
+  pass.list(found);
+  if constexpr (Kind::answers == ContactKinds::penetration) stats.penetration_seconds = timer.lap();
+  return true;
+}
+
+void Detection::list_objects(ContactKinds, std::vector<IntersectedObject>& objects) {
+  objects.resize(world_.slot_count());
   is_listed_.assign(world_.slot_count(), 0);
-  for (const auto& [a, b] : input.jobs) {
+  for (const auto& [a, b] : pairs_.jobs()) {
     for (const std::uint32_t slot : {a, b}) {
       if (std::exchange(is_listed_[slot], std::uint8_t{1}) != 0) continue;
       WorldObject& object = world_[slot];
-      intersected_objects_[slot] = {world_.id_of(slot), object.resting_view(), &object.octree(),
-                                    object.vertex_groups(),
-                                    object.tests_neighbours() ? &object.vertex_triangles() : nullptr};
+      objects[slot] = {world_.id_of(slot), object.resting_view(), &object.octree(), object.vertex_groups(),
+                       object.tests_neighbours() ? &object.vertex_triangles() : nullptr};
     }
   }
-  const IntersectionSearch search{question_.has_intersections(),
-                                  question_.contact_points || question_.has_penetration(),
-                                  question_.colliding_vertices};
-  return intersection_pass_.run(input, intersected_objects_, search, stats);
 }
 
-bool Detection::find_impacts(const PassInput& input, StepStats& stats) {
-  list_moving_objects(world_, MovingShape::Part::way, moving_objects_);
-  return impact_pass_.run(input, moving_objects_, question_.impact, stats);
+void Detection::list_objects(ContactKinds kind, std::vector<MovingObject>& objects) {
+  const bool is_way = info_of(kind).shape == SearchedShape::paths;
+  list_moving_objects(world_, is_way ? MovingShape::Part::way : MovingShape::Part::end, objects);
 }
 
-bool Detection::find_proximity(const PassInput& input, StepStats& stats) {
-  list_moving_objects(world_, MovingShape::Part::end, moving_objects_);
-  return proximity_pass_.run(input, moving_objects_, {question_.proximity_listing, question_.impact.kinds},
-                             stats);
-}
-
-bool Detection::find_penetrations(const PassInput& input, StepStats& stats) {
-  penetrated_objects_.assign(world_.slot_count(), {});
-  for (const auto& [a, b] : input.jobs) {
+void Detection::list_objects(ContactKinds, std::vector<PenetratedObject>& objects) {
+  objects.assign(world_.slot_count(), {});
+  for (const auto& [a, b] : pairs_.jobs()) {
     for (const std::uint32_t slot : {a, b}) {
-      if (penetrated_objects_[slot].surface.octree != nullptr) continue;
+      if (objects[slot].surface.octree != nullptr) continue;
       WorldObject& object = world_[slot];
       const std::span<const std::uint8_t> none, inward = question_.curves ? object.inward_triangles() : none;
-      penetrated_objects_[slot] = {
-          queried_object(world_, slot),
-          {&object.octree(), &object.vertex_triangles(), &object.placement().end(),
-           object.resting_view().translation, object.placement().is_mirrored(), inward},
-          object.options.solid};
+      objects[slot] = {queried_object(world_, slot),
+                       {&object.octree(), &object.vertex_triangles(), &object.placement().end(),
+                        object.resting_view().translation, object.placement().is_mirrored(), inward},
+                       object.options.solid};
     }
   }
-  DetectResult found;
-  found.groups = intersection_pass_.groups();
-  found.contacts = intersection_pass_.contacts();
-  found.contact_points = intersection_pass_.contact_points();
-  if (!penetration_pass_.run(input, penetrated_objects_, found, question_.curves)) return false;
-  stats.penetrations = penetration_pass_.penetrations().size();
-  stats.curves = penetration_pass_.curves().curves.size();
-  return true;
 }
 
 void Detection::list_non_finite() {
@@ -109,35 +98,10 @@ void Detection::list_non_finite() {
 }
 
 void Detection::list(DetectResult& found) {
-  if (question_.searches_at_rest()) {
-    found.truncated = intersection_pass_.is_truncated();
-    found.groups = intersection_pass_.groups();
-    found.contacts = intersection_pass_.contacts();
-    found.contact_points = intersection_pass_.contact_points();
-    found.colliding_vertex_groups = intersection_pass_.colliding_vertex_groups();
-    found.colliding_vertices = intersection_pass_.colliding_vertices();
-  }
-  if (question_.is_continuous()) {
-    found.truncated = found.truncated || impact_pass_.is_truncated();
-    found.continuous_groups = impact_pass_.groups();
-    found.continuous_contacts = impact_pass_.contacts();
-  }
-  if (question_.has_penetration()) {
-    found.penetration_groups = penetration_pass_.groups();
-    found.penetrations = penetration_pass_.penetrations();
-    found.vertices_on_surface = penetration_pass_.vertices_on_surface();
-    found.contained_parts = penetration_pass_.contained_parts();
-    const CurveLists& curves = penetration_pass_.curves();
-    found.curves = curves.curves;
-    found.curve_contacts = curves.contacts;
-    found.curve_points = curves.points;
-    found.enclosed_vertices = curves.enclosed;
-  }
-  if (question_.has_proximity()) {
-    found.truncated = found.truncated || proximity_pass_.is_truncated();
-    found.proximity_groups = proximity_pass_.groups();
-    found.proximity_pairs = proximity_pass_.pairs();
-  }
+  const auto list_pass = [&]<class Kind>(const Kind& pass) {
+    if (question_.searches(Kind::answers)) pass.list(found);
+  };
+  std::apply([&](const auto&... pass) { (list_pass(pass), ...); }, passes_);
   found.object_pairs = pairs_.pairs();
   found.non_finite_vertices = non_finite_;
   found.untested = untested_.list(world_, question_, found);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "answers/impact/impact_pass.hpp"
@@ -31,10 +32,7 @@ class Detection {
   template <class Visit>
   void visit_lists(const Visit& visit) {
     pairs_.visit_lists(visit);
-    intersection_pass_.visit_lists(visit);
-    impact_pass_.visit_lists(visit);
-    proximity_pass_.visit_lists(visit);
-    penetration_pass_.visit_lists(visit);
+    std::apply([&](auto&... pass) { (pass.visit_lists(visit), ...); }, passes_);
     untested_.visit_lists(visit);
     visit(non_finite_);
   }
@@ -44,11 +42,11 @@ class Detection {
   const ObjectPairs& pairs() const { return pairs_; }
 
  private:
-  /// These return false when they were stopped.
-  bool find_contacts(const PassInput& input, StepStats& stats);
-  bool find_impacts(const PassInput& input, StepStats& stats);
-  bool find_proximity(const PassInput& input, StepStats& stats);
-  bool find_penetrations(const PassInput& input, StepStats& stats);
+  template <class Kind>
+  bool find(Kind& pass, const PassInput& input, DetectResult& found, StepStats& stats);
+  void list_objects(ContactKinds kind, std::vector<IntersectedObject>& objects);
+  void list_objects(ContactKinds kind, std::vector<MovingObject>& objects);
+  void list_objects(ContactKinds kind, std::vector<PenetratedObject>& objects);
   void list_non_finite();
 
   World& world_;
@@ -56,17 +54,14 @@ class Detection {
   ObjectPairs pairs_;
   std::vector<NodePair> node_pairs_;  // scratch memory of lazy shapes
   std::vector<ChildPair> children_;
-  IntersectionPass intersection_pass_;
-  ImpactPass impact_pass_;
-  ProximityPass proximity_pass_;
-  PenetrationPass penetration_pass_;
+  // One for each kind of contacts; penetration reads the intersections.
+  std::tuple<IntersectionPass, ImpactPass, ProximityPass, PenetrationPass> passes_;
   UntestedKinds untested_;
   std::vector<NonFiniteVertex> non_finite_;
-  // By slot.
-  std::vector<IntersectedObject> intersected_objects_;  // those of the jobs
+  // By slot; those of the jobs, and all moving objects.
+  std::tuple<std::vector<IntersectedObject>, std::vector<MovingObject>, std::vector<PenetratedObject>>
+      objects_;
   std::vector<std::uint8_t> is_listed_;
-  std::vector<MovingObject> moving_objects_;
-  std::vector<PenetratedObject> penetrated_objects_;
 };
 
 }  // namespace supple

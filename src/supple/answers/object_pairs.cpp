@@ -34,7 +34,7 @@ double half_separation_of(const ObjectOptions& object, const VertexWays* ways, c
 
 double growth_of(const ObjectOptions& object, const VertexWays* ways, const Question& question) {
   return std::max(question.is_continuous() ? growth(half_separation_of(object, ways, question)) : 0,
-                  question.has_proximity() ? growth(object.margin) : 0);
+                  question.reads(SearchedShape::margins) ? growth(object.margin) : 0);
 }
 
 ObjectPairs::ObjectPairs(const World& world, BoundingVolume volume)

@@ -52,6 +52,8 @@ struct PassWorker {
 /// `Kind` derives from it, is its friend, and has the test and the record:
 ///   `ObjectPairView view_of_job(job)`     what the traversal reads
 ///   `run_task(task, worker)`              tests candidates and adds to `worker.found`
+///   `answers`, `list_of_records`          the kind of contacts, and the list of a `DetectResult`
+///   `search_of(question, earlier)`        what `run` searches; passes before this one found `earlier`
 /// and, if it calls `drop_excess` and `gather`:
 ///   `static is_before(found, found)`      the order of the records of a job
 ///   `place_of(job, found)`                a place for `ContactLimit`; does not descend in that order
@@ -74,6 +76,12 @@ class Pass {
     return largest;
   }
 
+  /// Adds the lists to a result; passes add theirs.
+  void list(DetectResult& found) const {
+    found.truncated = found.truncated || is_truncated_;
+    found.*info_of(Kind::answers).groups = groups_;
+    found.*Kind::list_of_records = records_;
+  }
   /// Calls `visit(list)` for each list of the result; passes add theirs.
   template <class Visit>
   void visit_lists(const Visit& visit) {

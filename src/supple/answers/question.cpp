@@ -18,7 +18,8 @@ Question question_of(const DetectRequest& request, const SceneOptions& options) 
                     .lazy_refit = options.comparison.lazy_refit,
                     .manifolds = request.manifolds.value_or(options.manifolds),
                     .curves = request.curves.value_or(options.curves)};
-  if (request.manifolds.value_or(false) && !question.has_penetration() && !question.has_proximity())
+  if (request.manifolds.value_or(false) && !question.has_penetration() &&
+      !question.searches(ContactKinds::proximity))
     fail("detect: manifolds are made from penetration or proximity; request one of these contacts");
   if (request.curves.value_or(false) && !question.has_penetration())
     fail("detect: curves belong to penetration; request it, too");

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
 #include "answers/search_options.hpp"
 #include "supple/options.hpp"
+#include "supple/result.hpp"
 #include "supple/safe_step.hpp"
 #include "world/world.hpp"
 
@@ -28,12 +30,19 @@ struct Question {
   bool has_intersections() const { return contains(contacts, ContactKinds::intersection); }
   bool is_continuous() const { return contains(contacts, ContactKinds::continuous); }
   bool has_penetration() const { return contains(contacts, ContactKinds::penetration); }
-  bool has_proximity() const { return contains(contacts, ContactKinds::proximity); }
-  /// It searches intersections, or only counts their candidates.
-  bool searches_at_rest() const { return contacts == ContactKinds::none || has_intersections(); }
+  /// It searches this kind; without kinds, it counts the candidates of intersections.
+  bool searches(ContactKinds kind) const {
+    return contains(contacts, kind) || (contacts == ContactKinds::none && kind == ContactKinds::intersection);
+  }
+  /// It searches a kind that reads this shape.
+  bool reads(SearchedShape shape) const {
+    return std::ranges::any_of(
+        contact_kinds, [&](const ContactKindInfo& of) { return of.shape == shape && searches(of.kind); });
+  }
+  bool searches_at_rest() const { return reads(SearchedShape::triangles); }
   SearchedShapes shapes() const {
     const bool only_intersections = with_included(contacts) == ContactKinds::intersection;
-    return {searches_at_rest(), is_continuous(), has_proximity(),
+    return {searches_at_rest(), reads(SearchedShape::paths), reads(SearchedShape::margins),
             lazy_refit && (contacts == ContactKinds::none || only_intersections),
             // Colliding vertices and separations need all overlapping leaves, so nothing may be culled.
             searches_at_rest() && !colliding_vertices, is_continuous() && impact.impact.min_separation == 0};
@@ -50,7 +59,7 @@ struct Question {
   /// The shape of an object that the search reads.
   OctreeView view(const WorldObject& object) const {
     if (searches_at_rest()) return object.resting_view();
-    return is_continuous() ? object.moving_view() : object.near_view();
+    return reads(SearchedShape::paths) ? object.moving_view() : object.near_view();
   }
   /// The separation at which elements of two objects touch.
   double separation_of(const WorldObject& a, const WorldObject& b) const {

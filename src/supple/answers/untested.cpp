@@ -6,27 +6,23 @@
 #include "geometry/vector.hpp"
 
 namespace supple {
-namespace {
 
-/// Whether an object is what a kind needs of one object of a pair.
-bool has_quality(ContactKinds kind, const WorldObject& object) {
-  if (kind == ContactKinds::continuous) return object.placement().has_motion();
-  if (kind == ContactKinds::proximity) return object.options.margin > 0;
-  if (kind == ContactKinds::penetration) return object.options.solid;
-  return true;
+bool has_quality(ContactKinds kind, const ObjectOptions& object, bool has_motion) {
+  const NothingToTest lack = info_of(kind).lack;
+  if (lack == NothingToTest::no_motion) return has_motion;
+  if (lack == NothingToTest::no_margin) return object.margin > 0;
+  return lack != NothingToTest::no_solid || object.solid;
 }
-
-}  // namespace
 
 /// An element takes part by a finite edge of a triangle, or by all of its vertices. Without edges and points,
 /// all of a triangle must be finite.
 TestableObject testable_object(ContactKinds kind, ElementKinds elements, const WorldObject& object,
                                ObjectId id, bool tests_itself) {
-  const bool on_the_way = kind == ContactKinds::continuous;
-  const bool has_parts = on_the_way || kind == ContactKinds::proximity;
+  const bool on_the_way = info_of(kind).shape == SearchedShape::paths;
+  const bool has_parts = info_of(kind).shape != SearchedShape::triangles;
   const bool only_edges = has_parts && elements == ElementKinds::edge_edge;
   TestableObject found{.id = id,
-                       .has_quality = has_quality(kind, object),
+                       .has_quality = has_quality(kind, object.options, object.placement().has_motion()),
                        .is_static = object.options.is_static,
                        .group = object.options.group,
                        .mask = object.options.mask};
@@ -56,11 +52,8 @@ std::optional<NothingToTest> TestableObjects::reason(ContactKinds kind) const {
   if (count([](const TestableObject& object) { return object.has_elements; }) == 0)
     return NothingToTest::no_elements;
   if (taking_part == 0) return NothingToTest::not_finite;
-  if (count([](const TestableObject& object) { return object.takes_part && object.has_quality; }) == 0) {
-    return kind == ContactKinds::continuous  ? NothingToTest::no_motion
-           : kind == ContactKinds::proximity ? NothingToTest::no_margin
-                                             : NothingToTest::no_solid;
-  }
+  if (count([](const TestableObject& object) { return object.takes_part && object.has_quality; }) == 0)
+    return info_of(kind).lack;
   if (taking_part == 1) return NothingToTest::one_object;
   if (count([](const TestableObject& object) { return object.takes_part && !object.is_static; }) == 0)
     return NothingToTest::all_static;
@@ -86,14 +79,11 @@ std::optional<NothingToTest> UntestedKinds::nothing_to_test(const World& world, 
 std::span<const UntestedKind> UntestedKinds::list(const World& world, const Question& question,
                                                   const DetectResult& found) {
   untested_.clear();
-  const auto check = [&](ContactKinds kind, bool has_contacts) {
-    if (has_contacts || !contains(question.contacts, kind)) return;
-    if (const auto reason = nothing_to_test(world, question, kind)) untested_.push_back({kind, *reason});
-  };
-  check(ContactKinds::intersection, !found.groups.empty());
-  check(ContactKinds::continuous, !found.continuous_groups.empty());
-  check(ContactKinds::proximity, !found.proximity_groups.empty());
-  check(ContactKinds::penetration, !found.penetration_groups.empty() || !found.contained_parts.empty());
+  for (const ContactKindInfo& of : contact_kinds) {
+    if (of.is_in(found) || !contains(question.contacts, of.kind)) continue;
+    if (const auto reason = nothing_to_test(world, question, of.kind))
+      untested_.push_back({of.kind, *reason});
+  }
   return untested_;
 }
 

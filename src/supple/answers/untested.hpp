@@ -28,6 +28,8 @@ struct TestableObject {
   }
 };
 
+/// Whether an object has what a kind needs of one object of a pair.
+bool has_quality(ContactKinds kind, const ObjectOptions& object, bool has_motion);
 TestableObject testable_object(ContactKinds kind, ElementKinds elements, const WorldObject& object,
                                ObjectId id, bool tests_itself);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -34,15 +35,14 @@ class Events {
   void release(ObjectId id);
 
  private:
-  void list_touching_pairs(const DetectResult& found);
-  void list_deep_pairs(const DetectResult& found);
-  void list_pairs_of_groups(const DetectResult& found);
+  static constexpr std::size_t of_leaves = events_of_kinds, of_volumes = of_leaves + 1;
 
-  PairCache volume_, narrow_phase_, contact_, proximity_, penetration_;
-  const std::array<PairCache*, 5> all_{&volume_, &narrow_phase_, &contact_, &proximity_, &penetration_};
-  std::unique_ptr<ManifoldMaker> manifolds_;  // null until a step asks for manifolds
-  // Scratch memory of a step.
-  std::vector<ObjectPair> touching_pairs_, leaf_pairs_, near_pairs_, deep_pairs_;
+  void list_pairs(const DetectResult& found);
+
+  /// By `place_of_events`, then those of colliding vertices and of object pairs.
+  std::array<PairCache, of_volumes + 1> events_;
+  std::unique_ptr<ManifoldMaker> manifolds_;               // null until a step asks for manifolds
+  std::array<std::vector<ObjectPair>, of_volumes> pairs_;  // those of a step
 };
 
 }  // namespace supple

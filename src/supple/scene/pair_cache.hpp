@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -7,6 +9,17 @@
 #include "supple/types.hpp"
 
 namespace supple {
+
+/// The place of the events of a kind of contacts among those of all kinds. Intersections and continuous
+/// contacts have the same events.
+constexpr std::size_t place_of_events(const ContactKindInfo& kind) {
+  std::size_t place = 0;
+  for (const ContactKindInfo* of = contact_kinds.data(); of->events != kind.events; ++of)
+    place += of->events != of[1].events ? 1 : 0;
+  return place;
+}
+inline constexpr std::size_t events_of_kinds =
+    place_of_events(std::ranges::max(contact_kinds, {}, place_of_events)) + 1;
 
 /// The overlapping pairs of the last step and how they changed: pairs are kept while they overlap and
 /// released when they separate (the paper's section 5.2). A pair that begins ends exactly once.

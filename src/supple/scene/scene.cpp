@@ -20,25 +20,6 @@ void check_finite(const Vec3d& v, const char* call, const char* what) {
   }
 }
 
-ElementVertices triangle_vertices(const World& world, ObjectId id, std::uint32_t triangle) {
-  const WorldObject& found = world.object(id, "vertices_of");
-  check_triangle(found, triangle, "vertices_of");
-  return {found.octree().user_triangle(triangle), 3};
-}
-
-ElementVertices element_vertices(const World& world, ObjectId id, FeatureKind kind,
-                                 const std::array<std::uint32_t, 2>& element) {
-  switch (kind) {
-    case FeatureKind::vertex:
-      return {{element[0]}, 1};
-    case FeatureKind::edge:
-      return {{element[0], element[1]}, 2};
-    case FeatureKind::face:
-      break;
-  }
-  return triangle_vertices(world, id, element[0]);
-}
-
 }  // namespace
 
 Scene::Scene(const SceneOptions& options) : implementation_(new Implementation(options)) {}
@@ -171,23 +152,13 @@ const SceneOptions& Scene::options() const {
 
 namespace detail {
 
-ElementVertices vertices_of(const Scene& scene, const LimitingPair& pair, ContactSide side) {
-  const bool is_a = side == ContactSide::a;
-  return element_vertices(SceneAccess::of(scene).world, is_a ? pair.object_a : pair.object_b,
-                          feature_kinds(pair.kind)[is_a ? 0 : 1], is_a ? pair.element_a : pair.element_b);
-}
-ElementVertices vertices_of(const Scene& scene, const ContinuousContact& contact, ContactSide side) {
-  return vertices_of(scene, pair_of_contact(contact), side);
-}
-ElementVertices vertices_of(const Scene& scene, const Contact& contact, ContactSide side) {
-  const bool is_a = side == ContactSide::a;
-  return triangle_vertices(SceneAccess::of(scene).world, is_a ? contact.object_a : contact.object_b,
-                           is_a ? contact.triangle_a : contact.triangle_b);
-}
-ElementVertices vertices_of(const Scene& scene, const ProximityPair& pair, ContactSide side) {
-  const bool is_a = side == ContactSide::a;
-  return element_vertices(SceneAccess::of(scene).world, is_a ? pair.object_a : pair.object_b,
-                          is_a ? pair.kind_a : pair.kind_b, is_a ? pair.element_a : pair.element_b);
+ElementVertices vertices_of(const Scene& scene, ObjectId id, FeatureKind kind,
+                            const std::array<std::uint32_t, 2>& element) {
+  if (kind == FeatureKind::vertex) return {{element[0]}, 1};
+  if (kind == FeatureKind::edge) return {{element[0], element[1]}, 2};
+  const WorldObject& found = SceneAccess::of(scene).world.object(id, "vertices_of");
+  check_triangle(found, element[0], "vertices_of");
+  return {found.octree().user_triangle(element[0]), 3};
 }
 
 }  // namespace detail

@@ -154,6 +154,8 @@ double real_number(const FieldInfo& field, const std::byte* row, std::size_t pla
 const std::vector<ListInfo>& list_infos();
 /// The place of a list in `list_infos`. Throws `Error` when there is no list with this name.
 std::size_t place_of_list(std::string_view name);
+/// The place of the list that answers a kind of contacts.
+std::size_t place_of_answer(ContactKinds kind);
 
 /// The rows of a list.
 struct ListRows {

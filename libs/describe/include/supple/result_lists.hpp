@@ -34,6 +34,28 @@ struct ResultList {
   const char* unit = "";
 };
 
+/// Calls `visitor(begin, end, stay, member)` for the events of each set of pairs: with the lists of the pairs
+/// that begin and end, the name of the list of those that stay, and `member(result)`, the `PairEvents`.
+template <class Visitor>
+constexpr void for_each_events(Visitor&& visitor) {
+#define SUPPLE_EVENTS(kind, doc_begin, doc_end)                                              \
+  visitor(                                                                                   \
+      ResultList<ObjectPair>{"events/" #kind "_begin", "events/" #kind "_begin", doc_begin}, \
+      ResultList<ObjectPair>{"events/" #kind "_end", "events/" #kind "_end", doc_end},       \
+      "events/" #kind "_stay", [](auto& result) -> auto& { return result.kind##_events; })
+  SUPPLE_EVENTS(volume, "object pairs that the last frame did not have",
+                "object pairs that only the last frame had");
+  SUPPLE_EVENTS(narrow_phase, "different objects whose leaves begin to collide; with `colliding_vertices`",
+                "different objects without such leaves from now on");
+  SUPPLE_EVENTS(contact, "different objects that begin to have contacts",
+                "different objects that no longer have any");
+  SUPPLE_EVENTS(proximity, "different objects that come within their margins",
+                "different objects that leave their margins");
+  SUPPLE_EVENTS(penetration, "objects one of which begins to have a vertex or a part inside the other",
+                "objects that no longer penetrate");
+#undef SUPPLE_EVENTS
+}
+
 /// Calls `visitor(list, member)` for each list with records of its own; `member(result)` is the list of a
 /// `DetectResult` or of a structure with members of the same names. Lists of groups follow from the records.
 template <class Visitor>
@@ -75,24 +97,12 @@ constexpr void for_each_list(Visitor&& visitor) {
   SUPPLE_LIST(ManifoldPoint, manifold_points, "manifold point", "a point that spans a manifold");
   SUPPLE_LIST(Manifold, manifolds, "manifold", "a patch of contacts of two objects; with `manifolds`");
 #undef SUPPLE_LIST
-#define SUPPLE_EVENTS(kind, doc_begin, doc_end)                                              \
-  visitor(                                                                                   \
-      ResultList<ObjectPair>{"events/" #kind "_begin", "events/" #kind "_begin", doc_begin}, \
-      [](auto& result) -> auto& { return result.kind##_events.begin; });                     \
-  visitor(                                                                                   \
-      ResultList<ObjectPair>{"events/" #kind "_end", "events/" #kind "_end", doc_end},       \
-      [](auto& result) -> auto& { return result.kind##_events.end; })
-  SUPPLE_EVENTS(volume, "object pairs that the last frame did not have",
-                "object pairs that only the last frame had");
-  SUPPLE_EVENTS(narrow_phase, "different objects whose leaves begin to collide; with `colliding_vertices`",
-                "different objects without such leaves from now on");
-  SUPPLE_EVENTS(contact, "different objects that begin to have contacts",
-                "different objects that no longer have any");
-  SUPPLE_EVENTS(proximity, "different objects that come within their margins",
-                "different objects that leave their margins");
-  SUPPLE_EVENTS(penetration, "objects one of which begins to have a vertex or a part inside the other",
-                "objects that no longer penetrate");
-#undef SUPPLE_EVENTS
+  for_each_events([&](const auto& begin, const auto& end, const char*, auto member) {
+    visitor(
+        begin, [member](auto& result) -> auto& { return member(result).begin; });
+    visitor(
+        end, [member](auto& result) -> auto& { return member(result).end; });
+  });
 }
 
 }  // namespace supple

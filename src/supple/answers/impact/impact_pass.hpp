@@ -11,6 +11,7 @@
 #include "answers/element_candidates.hpp"
 #include "answers/first_contacts.hpp"
 #include "answers/pass.hpp"
+#include "answers/question.hpp"
 #include "answers/search_options.hpp"
 #include "contact/impact/impact_filter.hpp"
 #include "contact/impact/relative_motion.hpp"
@@ -92,6 +93,11 @@ using FirstOfAll = std::function<SafeStep(const SafeStep&)>;
 /// phase hands its candidates to the exact stage in batches.
 class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, ContinuousContact> {
  public:
+  static constexpr ContactKinds answers = ContactKinds::continuous;
+  static constexpr auto list_of_records = &DetectResult::continuous_contacts;
+  static ImpactSearchOptions search_of(const Question& question, const DetectResult&) {
+    return question.impact;
+  }
   /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. Returns false
   /// when it was stopped; the lists are then not valid.
   bool run(const PassInput& input, std::span<const MovingObject> objects, const ImpactSearchOptions& options,
@@ -115,6 +121,10 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   const StepStats& work() const { return work_; }
   std::span<const ContinuousContact> contacts() const {
     return lists_first() ? first_contacts_.contacts() : records_;
+  }
+  void list(DetectResult& found) const {
+    Pass::list(found);
+    found.continuous_contacts = contacts();
   }
   template <class Visit>
   void visit_lists(const Visit& visit) {

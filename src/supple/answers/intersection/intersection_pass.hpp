@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "answers/pass.hpp"
+#include "answers/question.hpp"
 #include "contact/intersection/crossing_segments.hpp"
 #include "contact/intersection/pair_filter.hpp"
 #include "contact/intersection/separating_normal.hpp"
@@ -99,6 +100,12 @@ struct IntersectionWorker : PassWorker<FoundContact> {
 /// result: a worker drops those of a job after the first `max_contacts`.
 class IntersectionPass : public Pass<IntersectionPass, IntersectedObject, IntersectionWorker, Contact> {
  public:
+  static constexpr ContactKinds answers = ContactKinds::intersection;
+  static constexpr auto list_of_records = &DetectResult::contacts;
+  static IntersectionSearch search_of(const Question& question, const DetectResult&) {
+    return {question.has_intersections(), question.contact_points || question.has_penetration(),
+            question.colliding_vertices};
+  }
   /// Finds the first `max_contacts` contacts in canonical order, for any number of threads. Returns false
   /// when it was stopped; the lists are then not valid.
   bool run(const PassInput& input, std::span<const IntersectedObject> objects,
@@ -106,9 +113,12 @@ class IntersectionPass : public Pass<IntersectionPass, IntersectedObject, Inters
 
   std::span<const Contact> contacts() const { return records_; }
   std::span<const ContactPoint> contact_points() const { return points_; }
-  std::span<const CollidingVertices> colliding_vertex_groups() const { return colliding_.groups; }
-  std::span<const std::uint32_t> colliding_vertices() const { return colliding_.vertices; }
-
+  void list(DetectResult& found) const {
+    Pass::list(found);
+    found.contact_points = points_;
+    found.colliding_vertex_groups = colliding_.groups;
+    found.colliding_vertices = colliding_.vertices;
+  }
   template <class Visit>
   void visit_lists(const Visit& visit) {
     Pass::visit_lists(visit);

@@ -33,7 +33,8 @@ std::span<Item> part_of(std::vector<Item>& list, Range range) {
 }  // namespace
 
 bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObject> objects,
-                          const DetectResult& result, bool curves) {
+                          const PenetrationSearch& search, StepStats& stats) {
+  const auto& [result, curves] = search;
   objects_ = objects;
   list_pairs(input.jobs);
   workers_.resize(input.parallel.worker_count());
@@ -62,6 +63,8 @@ bool PenetrationPass::run(const PassInput& input, std::span<const PenetratedObje
   gather();
   if (!find_depths(input.stop, input.parallel)) return false;
   outcomes_.complete();
+  stats.penetrations = found_.penetrations.size();
+  stats.curves = found_.curves.curves.size();
   return true;
 }
 

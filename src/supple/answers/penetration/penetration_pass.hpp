@@ -9,6 +9,7 @@
 
 #include "answers/pass.hpp"
 #include "answers/penetration/manifold_methods.hpp"
+#include "answers/question.hpp"
 #include "contact/distance/distance_batch.hpp"
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
@@ -34,6 +35,12 @@ struct PenetrationLists {
   }
 };
 
+/// What a search for penetrations reads besides the objects.
+struct PenetrationSearch {
+  const DetectResult& found;  ///< all contacts of the jobs
+  bool curves = false;
+};
+
 /// Finds what objects that intersect or contain each other do: vertices inside solids, contained parts, and
 /// curves.
 ///
@@ -49,15 +56,26 @@ struct PenetrationLists {
 /// memory between steps.
 class PenetrationPass {
  public:
-  /// `result` has all contacts of the jobs. Returns false when it was stopped; the lists are then not valid.
-  bool run(const PassInput& input, std::span<const PenetratedObject> objects, const DetectResult& result,
-           bool curves);
+  using Object = PenetratedObject;
+  static constexpr ContactKinds answers = ContactKinds::penetration;
+  static PenetrationSearch search_of(const Question& question, const DetectResult& found) {
+    return {found, question.curves};
+  }
+  /// Returns false when it was stopped; the lists are then not valid.
+  bool run(const PassInput& input, std::span<const PenetratedObject> objects, const PenetrationSearch& search,
+           StepStats& stats);
 
-  std::span<const PenetrationGroup> groups() const { return groups_; }
-  std::span<const Penetration> penetrations() const { return found_.penetrations; }
-  std::span<const std::uint32_t> vertices_on_surface() const { return found_.on_surface; }
-  std::span<const ContainedPart> contained_parts() const { return found_.parts; }
-  const CurveLists& curves() const { return found_.curves; }
+  /// Adds the lists to a result.
+  void list(DetectResult& found) const {
+    found.penetration_groups = groups_;
+    found.penetrations = found_.penetrations;
+    found.vertices_on_surface = found_.on_surface;
+    found.contained_parts = found_.parts;
+    found.curves = found_.curves.curves;
+    found.curve_contacts = found_.curves.contacts;
+    found.curve_points = found_.curves.points;
+    found.enclosed_vertices = found_.curves.enclosed;
+  }
   /// Calls `visit(list)` for each list of the result.
   template <class Visit>
   void visit_lists(const Visit& visit) {

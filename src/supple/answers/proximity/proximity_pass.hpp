@@ -8,6 +8,7 @@
 
 #include "answers/element_candidates.hpp"
 #include "answers/pass.hpp"
+#include "answers/question.hpp"
 #include "answers/search_options.hpp"
 #include "contact/distance/distance_batch.hpp"
 #include "contact/distance/recent_elements.hpp"
@@ -79,6 +80,11 @@ struct ProximityWorker : PassWorker<FoundPair> {
 /// is full, and drops those after the first `max_pairs`.
 class ProximityPass : public Pass<ProximityPass, MovingObject, ProximityWorker, ProximityPair> {
  public:
+  static constexpr ContactKinds answers = ContactKinds::proximity;
+  static constexpr auto list_of_records = &DetectResult::proximity_pairs;
+  static ProximitySearch search_of(const Question& question, const DetectResult&) {
+    return {question.proximity_listing, question.impact.kinds};
+  }
   /// Finds the first `max_contacts` pairs in canonical order; the objects are at rest. Returns false when it
   /// was stopped; the lists are then not valid.
   bool run(const PassInput& input, std::span<const MovingObject> objects, const ProximitySearch& search,

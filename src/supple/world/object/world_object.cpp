@@ -29,13 +29,14 @@ BoundingSphere sphere_around(const Aabb& box) {
   return sphere;
 }
 
-/// The rule for the size of leaves. Continuous detection and proximity test all vertices, edges and faces of
+/// The rule for the size of leaves. Searches of paths and margins test all vertices, edges and faces of
 /// two leaves, most of them in vain, so leaves half as large are faster. Regular octrees keep the size that
 /// the user chose.
 ObjectOctreeOptions octree_options(const ObjectOptions& options, const SceneOptions& scene_options) {
   ObjectOctreeOptions octree = options.octree;
-  const bool tests_elements = contains(scene_options.contacts, ContactKinds::continuous) ||
-                              contains(scene_options.contacts, ContactKinds::proximity);
+  const bool tests_elements = std::ranges::any_of(contact_kinds, [&](const ContactKindInfo& of) {
+    return of.shape != SearchedShape::triangles && contains(scene_options.contacts, of.kind);
+  });
   if (tests_elements && octree.build != ObjectOctreeBuild::regular)
     octree.leaf_size = octree.leaf_size / 2 + octree.leaf_size % 2;
   return octree;
