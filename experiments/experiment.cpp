@@ -8,14 +8,9 @@
 
 #include "base/interruption.hpp"
 #include "base/run_program.hpp"
-#include "program_2007/ablation.hpp"
-#include "program_2007/figures.hpp"
-#include "program_2007/trials.hpp"
+#include "program_2007/program_2007.hpp"
 #include "results.hpp"
-#include "studies/arity.hpp"
-#include "studies/claims.hpp"
-#include "studies/scaling.hpp"
-#include "studies/volumes.hpp"
+#include "studies/studies.hpp"
 #include "supple/utf8.hpp"
 #include "table1/table1.hpp"
 
@@ -47,7 +42,8 @@ Table1Options table1_options(const ExperimentOptions& options) {
   return table1;
 }
 
-/// An experiment without runs that can be resumed. Options that differ only by `quick` have a seed of their own.
+/// An experiment without runs that can be resumed. Options that differ only by `quick` have a seed of their
+/// own.
 Results run(const ExperimentOptions& given, const std::filesystem::path& folder) {
   const bool shown = !given.quiet;
   const auto with_seed = [&](auto options) {

@@ -16,7 +16,7 @@ struct ExperimentOptions {
   Kind kind = Kind::table1;
   bool quick = false;
   bool quiet = false;
-  std::string output;  ///< folder; empty: experiment_ and the kind
+  std::string output;                      ///< folder; empty: experiment_ and the kind
   std::optional<std::uint32_t> threads{};  ///< parallel runs of table1 and sensitivity; none: one per core
   std::uint64_t seed = 1;
   // For table1; without a value, --quick decides.
@@ -31,11 +31,12 @@ struct ExperimentOptions {
 };
 
 /// In the order of `Kind`.
-inline const std::array<std::string, 9> experiment_names{"table1",   "scaling", "arity",       "volumes", "claims",
-                                                         "ablation", "trials",  "sensitivity", "figures"};
+inline const std::array<std::string, 9> experiment_names{
+    "table1", "scaling", "arity", "volumes", "claims", "ablation", "trials", "sensitivity", "figures"};
 const std::string& name_of(ExperimentOptions::Kind kind);
 
-/// Runs an experiment, writes its files and prints the verdicts on the claims. Returns the exit status of the program.
+/// Runs an experiment, writes its files and prints the verdicts on the claims. Returns the exit status of the
+/// program.
 int run_experiment(const ExperimentOptions& options);
 
 }  // namespace supple::experiments

@@ -58,7 +58,8 @@ void add_kind(CLI::App& app, ExperimentOptions& options) {
                                     experiment_names.back()));
     options.kind = static_cast<ExperimentOptions::Kind>(found - experiment_names.begin());
   };
-  app.add_option_function<std::string>(fmt::format("{}", fmt::join(experiment_names, "|")), parse, "The experiment")
+  app.add_option_function<std::string>(fmt::format("{}", fmt::join(experiment_names, "|")), parse,
+                                       "The experiment")
       ->required()
       ->type_name("");
 }
@@ -151,8 +152,9 @@ void add_table1(CLI::App& app, ExperimentOptions& options, cli::Dependences& dep
   table1_only(fused);
   dependences.push_back(
       {fused, [&options] { return options.method.scene.comparison.lazy_refit; }, "--lazy-refit on"});
-  CLI::Option* const resume = app.add_flag(
-      "--resume", options.resume, "Go on with the experiment in the output folder; what is complete is not repeated");
+  CLI::Option* const resume =
+      app.add_flag("--resume", options.resume,
+                   "Go on with the experiment in the output folder; what is complete is not repeated");
   CLI::Option* const threads =
       cli::add_number(app, "--threads", options.threads, 0, 1024,
                       "Parallel runs in simulated time, of one thread each (default and 0: one per core)");

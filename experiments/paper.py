@@ -4,9 +4,9 @@
 usage: paper.py [--quick] [--program PROGRAM] [--output FOLDER]
 
 Runs `supple experiment NAME --output FOLDER/NAME` for each experiment that has no page there yet; what is
-interrupted goes on, where the experiment can. Then writes FOLDER/paper.html, which needs no other file, and figures 3 and 5 as
-videos, FOLDER/figure3.webp and FOLDER/figure5.webp. --quick runs the quick versions. Needs matplotlib and
-scipy, which Debian has as python3-matplotlib and python3-scipy.
+interrupted goes on, where the experiment can. Then writes FOLDER/paper.html, which needs no other file, and
+figures 3 and 5 as videos, FOLDER/figure3.webp and FOLDER/figure5.webp. --quick runs the quick versions. Needs
+matplotlib and scipy, which Debian has as python3-matplotlib and python3-scipy.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from judge.pages import COLORS, escaped, page, table, try_debians_python
 try:
     import numpy as np
 
-    from judge import claims, report
+    from judge import report, verdicts
     from judge.tables import Tables
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -197,7 +197,7 @@ def page_of(output):
              *report.table1_plots(tables), *(table(*listing(tables)) for listing in (report.rates, report.ratios, report.averages)),
              "<h2>From 2007 to today</h2>", *report.ablation_plots(tables),
              "<h2>Settings that the paper does not state</h2>", *report.sensitivity_plots(tables), "<h2>What holds</h2>"]
-    parts += map(report.html_of_claim, claims.judged(tables))
+    parts += map(report.html_of_claim, verdicts.judged(tables))
     parts += ["<h2>Where it comes from</h2>",
               f"<p>Commit {escaped(head['commit'])}, {escaped(head['processor'])}. "
               "Each folder beside this page has the tables and the page of one experiment.</p>"]

@@ -31,7 +31,8 @@ void write_file(const fs::path& path, const std::string& text) {
 void write_results(const Results& results, const fs::path& folder) {
   make_folder(folder);
   std::string head = csv_head();
-  for (const auto& [name, value] : results.parameters) head += fmt::format("# {}: {}\n", name, one_line(value));
+  for (const auto& [name, value] : results.parameters)
+    head += fmt::format("# {}: {}\n", name, one_line(value));
   for (const Table& table : results.tables) write_file(folder / (table.name + ".csv"), head + csv_of(table));
 }
 
@@ -45,7 +46,8 @@ int judge(const fs::path& folder, bool quiet) {
   pid_t child = 0;
   if (posix_spawnp(&child, python.c_str(), nullptr, nullptr, arguments, environ) != 0)
     throw Error(
-        "the report needs python3 with matplotlib and scipy, which are not there; install them, on Debian by: "
+        "the report needs python3 with matplotlib and scipy, which are not there; install them, on Debian "
+        "by: "
         "apt-get install python3-matplotlib python3-scipy; the tables are written");
   int status = 0;
   waitpid(child, &status, 0);

@@ -9,7 +9,8 @@
 
 namespace supple::experiments {
 
-/// What one experiment measured. It judges nothing: the script `supple-experiment-report` does, from the files.
+/// What one experiment measured. It judges nothing: the script `supple-experiment-report` does, from the
+/// files.
 struct Results {
   std::string name;
   std::vector<std::pair<std::string, std::string>> parameters{};  ///< also in the head of each file

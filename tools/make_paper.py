@@ -33,7 +33,7 @@ from judge.pages import try_debians_python  # noqa: E402
 try:
     import jinja2
 
-    from judge import claims, report
+    from judge import report, verdicts
     from judge.estimates import text_of
     from judge.tables import Tables
 except ImportError:
@@ -44,7 +44,7 @@ except ImportError:
 class Results:
     def __init__(self, folder):
         self.tables = Tables(*sorted(path for path in folder.iterdir() if path.is_dir()))
-        self.claims = {claim.name: claim for claim in claims.judged(self.tables)}
+        self.claims = {claim.name: claim for claim in verdicts.judged(self.tables)}
 
     def verdict(self, name):
         claim = self.claims[name]

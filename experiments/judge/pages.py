@@ -11,7 +11,7 @@ import sys
 from judge.text import rounded
 
 # Distinguishable on white, also for most people with colour vision deficiency.
-COLORS = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#9467bd", "#888888", "#33bbee", "#ee3377", "#999933"]
+COLORS = ["#0077bb", "#ee7733", "#009988", "#cc3311", "#9467bd", "#888888", "#33bbee", "#ee3377", "#999933", "#222222", "#44bb99"]
 MARKERS = "osv^D"
 
 STYLE = """

@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from judge import claims, pages, paper
+from judge import claims, pages, paper, table1, verdicts
 from judge.estimates import LEVEL, ratio_of, text_of
 from judge.pages import COLORS, bar_plot, escaped, line_plot, new_plot, page, point_plot, stop, svg_of
 from judge.tables import Tables
@@ -27,7 +27,7 @@ TITLES = {
     "sensitivity": "Which settings give the ratios of the paper?",
     "figures": "The figures of the paper, from our own data",
 }
-CLOCKS = (claims.SIMULATED, claims.DETECTION, claims.PROGRAM)
+CLOCKS = (table1.SIMULATED, table1.DETECTION, table1.PROGRAM)
 
 
 # --- plots ---
@@ -110,7 +110,7 @@ def ablation_plots(tables):
     for scene in dict.fromkeys(tables.column("ablation", "scene")):
         stages = {stage: dict(medians(tables, "ablation", "change", lambda row: 1e3 * row[f"{stage}_seconds"], scene=scene)) for stage in STAGES}
         bars = [(change, [(stage, color, stages[stage][change]) for stage, color in zip(STAGES, COLORS)]) for change in stages["refit"]]
-        yield bar_plot(f"{claims.scene_in_words(scene)}: one choice at a time", "processor milliseconds of a step", bars)
+        yield bar_plot(f"{verdicts.scene_in_words(scene)}: one choice at a time", "processor milliseconds of a step", bars)
 
 
 def trials_plots(tables):
@@ -124,8 +124,8 @@ def with_error(estimate):
 
 def sensitivity_plots(tables):
     """The ratios in the broad phase by the clock of the program, and those of the paper."""
-    ratios = claims.sensitivity_ratios(tables)
-    chosen = {key[0]: of_case for key, of_case in ratios.items() if key[1:] == (claims.PROGRAM, "broad")}
+    ratios = table1.sensitivity_ratios(tables)
+    chosen = {key[0]: of_case for key, of_case in ratios.items() if key[1:] == (table1.PROGRAM, "broad")}
     groups = {f"{objects} objects": [(place, *with_error(of_case[objects])) for place, of_case in enumerate(chosen.values())
                                      if objects in of_case and math.isfinite(of_case[objects].mean)] for objects in (3, 6, 9)}
     yield point_plot("Spheres for each box, whole program, broad phase (the paper: 0.50, 0.82, 0.91)", "setting", "ratio of collisions",
@@ -192,15 +192,15 @@ def descent_plots(tables):
 
 def table1_plots(tables):
     """The ratio by each clock and in the paper, and the collisions in ten minutes of each clock."""
-    names = claims.scenes(tables)
+    names = table1.scenes(tables)
     for phase in paper.PHASES:
         groups = {}
         for clock in CLOCKS:
-            ratios = [(place, claims.ratio(tables, scene, phase, clock)) for place, scene in enumerate(names)]
+            ratios = [(place, table1.ratio(tables, scene, phase, clock)) for place, scene in enumerate(names)]
             groups[clock] = [(place, *with_error(ratio)) for place, ratio in ratios if math.isfinite(ratio.mean)]
-        groups["the paper"] = [(place, *with_error(claims.paper_ratio(int(scene.removeprefix("table1_")), phase))) for place, scene in enumerate(names)
+        groups["the paper"] = [(place, *with_error(table1.paper_ratio(int(scene.removeprefix("table1_")), phase))) for place, scene in enumerate(names)
                                if scene in ("table1_3", "table1_6", "table1_9")]
-        yield point_plot(f"Spheres for each box, {phase} phase", "scene", "ratio of collisions", [claims.scene_in_words(name) for name in names],
+        yield point_plot(f"Spheres for each box, {phase} phase", "scene", "ratio of collisions", [verdicts.scene_in_words(name) for name in names],
                          {name: points for name, points in groups.items() if points}, True)
 
 
@@ -215,28 +215,28 @@ PLOTS = {"table1": (table1_plots,), "scaling": (broad_phase_plots, vertices_plot
 def rates(tables):
     """Collisions in ten minutes by each clock, and those of the paper."""
     rows = []
-    for scene in claims.scenes(tables):
-        for volume in dict.fromkeys(row["volume"] for row in claims.runs(tables, scene=scene)):
+    for scene in table1.scenes(tables):
+        for volume in dict.fromkeys(row["volume"] for row in table1.runs(tables, scene=scene)):
             for phase in paper.PHASES:
                 numbers = []
                 for clock in CLOCKS:
-                    of_clock = claims.runs(tables, clock, scene=scene, volume=volume)
-                    numbers.append(rounded(float(np.mean([claims.collisions(row, phase, clock) for row in of_clock]))) if of_clock else "–")
+                    of_clock = table1.runs(tables, clock, scene=scene, volume=volume)
+                    numbers.append(rounded(float(np.mean([table1.collisions(row, phase, clock) for row in of_clock]))) if of_clock else "–")
                 objects = int(scene.removeprefix("table1_")) if scene in ("table1_3", "table1_6", "table1_9") else None
                 theirs = rounded(float(np.mean(paper.runs(objects, volume, phase)))) if (objects, volume) in paper.TABLE1 else "–"
-                rows.append([claims.scene_in_words(scene), volume, phase, *numbers, theirs])
-    return (["Scene", "Volume", "Phase", *(f"By {clock}" for clock in CLOCKS), "The paper"], rows, (0, 1, 2),
+                rows.append([verdicts.scene_in_words(scene), volume, phase, *numbers, theirs])
+    return (["Scene", "Volume", "Phase", *(clock.capitalize() for clock in CLOCKS), "The paper"], rows, (0, 1, 2),
             "Collisions in a run; by a clock, in ten minutes of it")
 
 
 def ratios(tables):
     """Spheres for each box by each clock, with intervals, and in the paper."""
     rows = []
-    for scene in claims.scenes(tables):
+    for scene in table1.scenes(tables):
         for phase in paper.PHASES:
-            of_paper = text_of(claims.paper_ratio(int(scene.removeprefix("table1_")), phase)) if scene in ("table1_3", "table1_6", "table1_9") else "–"
-            rows.append([claims.scene_in_words(scene), phase, *(text_of(claims.ratio(tables, scene, phase, clock)) for clock in CLOCKS), of_paper])
-    return ["Scene", "Phase", *(f"By {clock}" for clock in CLOCKS), "The paper"], rows, (0, 1), "Collisions with spheres for each with boxes"
+            of_paper = text_of(table1.paper_ratio(int(scene.removeprefix("table1_")), phase)) if scene in ("table1_3", "table1_6", "table1_9") else "–"
+            rows.append([verdicts.scene_in_words(scene), phase, *(text_of(table1.ratio(tables, scene, phase, clock)) for clock in CLOCKS), of_paper])
+    return ["Scene", "Phase", *(clock.capitalize() for clock in CLOCKS), "The paper"], rows, (0, 1), "Collisions with spheres for each with boxes"
 
 
 def changes(tables):
@@ -246,13 +246,13 @@ def changes(tables):
         seconds = {row["place"]: (row["change"], claims.program_seconds(tables, scene, row["place"])) for row in tables.rows("ablation", scene=scene)}
         for place, (change, of_change) in seconds.items():
             before, first = seconds[max(place - 1, 0)][1], seconds[0][1]
-            rows.append([claims.scene_in_words(scene), change, rounded(1e3 * float(np.median(of_change))), text_of(ratio_of(before, of_change)),
+            rows.append([verdicts.scene_in_words(scene), change, rounded(1e3 * float(np.median(of_change))), text_of(ratio_of(before, of_change)),
                          text_of(ratio_of(first, of_change))])
     return ["Scene", "One more choice of today", "ms of a step", "× the row above", "× 2007"], rows, (0, 1), "From the program of 2007 to today"
 
 
 def strains(tables):
-    rows = [[claims.scene_in_words(row["scene"]), row["preserved"], *(f"{100 * row[column]:.2g} %" for column in ("mean_area_error", "mean_strain", "largest_strain"))]
+    rows = [[verdicts.scene_in_words(row["scene"]), row["preserved"], *(f"{100 * row[column]:.2g} %" for column in ("mean_area_error", "mean_strain", "largest_strain"))]
             for row in tables.rows("claims_areas")]
     return ["Scene", "Areas preserved", "Mean change of an area", "Mean strain of an edge", "Largest strain"], rows, (0, 1), "Areas and strains"
 
@@ -306,12 +306,12 @@ def draw_what_holds(tables, path):
         axes.set_xscale("log")
         axes.grid(color="#ddd", linewidth=0.7)
     for clock, color in zip(CLOCKS, COLORS):
-        points = [(objects, claims.ratio(tables, f"table1_{objects}", "broad", clock)) for objects in claims.mixed(tables, clock)]
+        points = [(objects, table1.ratio(tables, f"table1_{objects}", "broad", clock)) for objects in table1.mixed(tables, clock)]
         points = [(objects, number) for objects, number in points if math.isfinite(number.error)]
         lines = [(objects, number.mean, *number.interval()) for objects, number in points]
-        left.plot([line[0] for line in lines], [line[1] for line in lines], marker="o", markersize=4, color=color, label=f"by {clock}")
+        left.plot([line[0] for line in lines], [line[1] for line in lines], marker="o", markersize=4, color=color, label=clock)
         left.fill_between([line[0] for line in lines], [line[2] for line in lines], [line[3] for line in lines], color=color, alpha=0.18, linewidth=0)
-    left.plot([3, 6, 9], [claims.paper_ratio(objects, "broad").mean for objects in (3, 6, 9)], linestyle="", marker="s", color="black", label="the paper")
+    left.plot([3, 6, 9], [table1.paper_ratio(objects, "broad").mean for objects in (3, 6, 9)], linestyle="", marker="s", color="black", label="the paper")
     for brute, octree, label, color in (("plain brute force", "plain octree", "programs of 2007's kind", COLORS[0]), ("brute force", "octree", "Supple today", COLORS[1])):
         sizes = [boxes for boxes in claims.box_counts(tables, octree) if boxes in claims.box_counts(tables, brute)]
         right.plot(sizes, [claims.step_ratio(tables, brute, octree, boxes).mean for boxes in sizes], marker="o", markersize=4, color=color, label=label)
@@ -325,7 +325,7 @@ def draw_what_holds(tables, path):
 
 
 def html_of_claim(claim):
-    kind = "holds" if claim.verdict == claims.HOLDS else "fails" if claim.verdict == claims.FAILS else "open"
+    kind = "holds" if claim.verdict == verdicts.HOLDS else "fails" if claim.verdict == verdicts.FAILS else "open"
     where = f" (section {claim.where.split(',')[0]})" if claim.where else ""
     parts = [f"<p>{escaped(claim.text)}{where}</p>", f"<p><b>{escaped(claim.verdict)}.</b> {escaped(claim.quantity)}: {escaped(claim.numbers)}</p>"]
     parts += [f"<p>{escaped(text)}</p>" for text in (claim.reading and f"Read as: {claim.reading}", claim.remark) if text]
@@ -372,7 +372,7 @@ def main():
         stop(f"supple-experiment-report: {arguments.folder} has no tables of an experiment; give a folder that `supple experiment` has written")
     try:
         tables = Tables(arguments.folder)
-        found = claims.judged(tables)
+        found = verdicts.judged(tables)
         (arguments.folder / f"{name}_claims.csv").write_text(csv_of(found), encoding="utf-8")
         (arguments.folder / f"{name}.html").write_text(html_of(tables, name, found), encoding="utf-8")
     except OSError as error:

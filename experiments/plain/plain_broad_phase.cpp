@@ -80,15 +80,18 @@ class Octree final : public PlainBroadPhase {
         const Aabb& box = (*boxes_)[object];
         bool is_in = true;
         for (int axis = 0; axis < 3; ++axis)
-          is_in = is_in && ((child >> axis & 1) == 0 ? box.min[axis] < middle[axis] : box.max[axis] >= middle[axis]);
+          is_in = is_in &&
+                  ((child >> axis & 1) == 0 ? box.min[axis] < middle[axis] : box.max[axis] >= middle[axis]);
         if (is_in) inside.push_back(object);
       }
       visit(child_low, half, level + 1, is_child_lowest);
     }
   }
 
-  /// A pair is in several regions: it counts in the one that has the lower corner of what both have in common.
-  void count(const Vec3f& low, const std::array<bool, 3>& is_lowest, const std::vector<std::uint32_t>& objects) {
+  /// A pair is in several regions: it counts in the one that has the lower corner of what both have in
+  /// common.
+  void count(const Vec3f& low, const std::array<bool, 3>& is_lowest,
+             const std::vector<std::uint32_t>& objects) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
       for (std::size_t j = i + 1; j < objects.size(); ++j) {
         const Aabb &a = (*boxes_)[objects[i]], &b = (*boxes_)[objects[j]];
@@ -113,8 +116,12 @@ class Octree final : public PlainBroadPhase {
 
 }  // namespace
 
-std::unique_ptr<PlainBroadPhase> plain_brute_force() { return std::make_unique<BruteForce>(); }
-std::unique_ptr<PlainBroadPhase> plain_sweep() { return std::make_unique<Sweep>(); }
+std::unique_ptr<PlainBroadPhase> plain_brute_force() {
+  return std::make_unique<BruteForce>();
+}
+std::unique_ptr<PlainBroadPhase> plain_sweep() {
+  return std::make_unique<Sweep>();
+}
 std::unique_ptr<PlainBroadPhase> plain_octree(const Vec3d& corner, double edge, std::uint32_t level_allowed) {
   return std::make_unique<Octree>(corner, edge, level_allowed);
 }

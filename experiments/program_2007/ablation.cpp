@@ -1,4 +1,4 @@
-#include "program_2007/ablation.hpp"
+#include "program_2007/program_2007.hpp"
 
 #include <fmt/core.h>
 #include <hwy/targets.h>
@@ -99,8 +99,9 @@ class Run {
     for (const ObjectId id : ids_) bytes += inspector.octree_statistics(id).bytes;
     const auto frames = static_cast<double>(replay_.frames.size());
     const auto of_step = [&](auto sum) { return static_cast<double>(sum) / frames; };
-    return {of_step(bounds), of_step(refit),           of_step(broad), of_step(narrow),    of_step(exact),
-            of_step(bounds + total), of_step(tests), of_step(triangles), bytes};
+    return {of_step(bounds), of_step(refit),     of_step(broad),
+            of_step(narrow), of_step(exact),     of_step(bounds + total),
+            of_step(tests),  of_step(triangles), bytes};
   }
 
  private:
@@ -116,13 +117,14 @@ void add_row(std::vector<Cell> head, const std::vector<Cell>& numbers, Table& ta
 }
 
 /// All programs in turn, so that slow changes of the machine affect all of them.
-void measure_programs(const Replay& replay, const std::vector<Program>& all, int rounds, Work& work, Table& table) {
+void measure_programs(const Replay& replay, const std::vector<Program>& all, int rounds, Work& work,
+                      Table& table) {
   std::vector<std::unique_ptr<Run>> runs;
   for (const Program& program : all) runs.push_back(std::make_unique<Run>(replay, program));
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < all.size(); ++i) {
-      add_row({replay.name, std::uint64_t{i}, all[i].change, static_cast<std::uint64_t>(round)}, runs[i]->replay(),
-              table);
+      add_row({replay.name, std::uint64_t{i}, all[i].change, static_cast<std::uint64_t>(round)},
+              runs[i]->replay(), table);
       work.done(1, fmt::format("{}, {}", replay.name, all[i].change));
     }
   }

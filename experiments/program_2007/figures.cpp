@@ -1,4 +1,4 @@
-#include "program_2007/figures.hpp"
+#include "program_2007/program_2007.hpp"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "program_2007/trials.hpp"
+#include "program_2007/program_2007.hpp"
 
 #include <fmt/core.h>
 
@@ -213,8 +213,8 @@ std::vector<TrianglePairs> exact_pairs(const Replay& replay) {
 
 /// What a trial reads and finds in a frame, on average.
 template <class Find>
-void measure(const Replay& replay, const std::vector<TrianglePairs>& exact, const char* trial, int round, Find find,
-             Table& table) {
+void measure(const Replay& replay, const std::vector<TrianglePairs>& exact, const char* trial, int round,
+             Find find, Table& table) {
   double seconds = 0, vertices = 0, candidates = 0, contacts = 0, missed = 0;
   const auto frames = static_cast<double>(replay.frames.size());
   for (std::size_t f = 0; f < replay.frames.size(); ++f) {
@@ -225,8 +225,8 @@ void measure(const Replay& replay, const std::vector<TrianglePairs>& exact, cons
     contacts += static_cast<double>(exact[f].size());
     for (const auto& pair : exact[f]) missed += found.candidates.contains(pair) ? 0 : 1;
   }
-  table.add({replay.name, std::string(trial), static_cast<std::uint64_t>(round), seconds / frames, vertices / frames,
-             candidates / frames, contacts / frames, missed / frames});
+  table.add({replay.name, std::string(trial), static_cast<std::uint64_t>(round), seconds / frames,
+             vertices / frames, candidates / frames, contacts / frames, missed / frames});
 }
 
 /// The hierarchy of 2007: its candidates are its pairs of leaves. A corner that it reads is a vertex read.
@@ -250,12 +250,15 @@ void measure_all(const Replay& replay, int rounds, Work& work, Table& table) {
   for (int round = 0; round < rounds; ++round) {
     measure_hierarchy(replay, round, table);
     Neighbours neighbours(replay);
-    measure(replay, exact, "neighbours of a vertex", round,
-            [&](const Replay::Frame& frame) { return neighbours.find(frame); }, table);
-    measure(replay, exact, "regions of the scene octree", round,
-            [&](const Replay::Frame& frame) { return by_regions(replay, frame, regions); }, table);
-    measure(replay, exact, "the common region", round,
-            [&](const Replay::Frame& frame) { return by_common_region(replay, frame); }, table);
+    measure(
+        replay, exact, "neighbours of a vertex", round,
+        [&](const Replay::Frame& frame) { return neighbours.find(frame); }, table);
+    measure(
+        replay, exact, "regions of the scene octree", round,
+        [&](const Replay::Frame& frame) { return by_regions(replay, frame, regions); }, table);
+    measure(
+        replay, exact, "the common region", round,
+        [&](const Replay::Frame& frame) { return by_common_region(replay, frame); }, table);
     work.done(1, replay.name);
   }
 }

@@ -1,4 +1,4 @@
-#include "studies/arity.hpp"
+#include "studies/studies.hpp"
 
 #include <fmt/core.h>
 
@@ -76,7 +76,8 @@ void measure(const Case& poses, std::uint32_t arity, std::uint32_t leaf_size, in
   const OctreeStatistics &a = cost.octree_a, &b = cost.octree_b;
   objects.add({poses.name, std::uint64_t{leaf_size}, std::uint64_t{arity}, a.nodes + b.nodes,
                std::uint64_t{std::max(a.depth, b.depth)}, (mean_depth(a) + mean_depth(b)) / 2,
-               (a.mean_node_width + b.mean_node_width) / 2, a.bytes + b.bytes, node_pairs, tests, refit, traversal});
+               (a.mean_node_width + b.mean_node_width) / 2, a.bytes + b.bytes, node_pairs, tests, refit,
+               traversal});
   if (leaf_size == 1)
     colliding.add({poses.name, std::uint64_t{arity}, children.nodes, children.children, children.above,
                    std::uint64_t{children.most}});
@@ -129,8 +130,8 @@ Results run_arity(const ArityOptions& options, bool show_progress) {
   const std::vector<Case> all = cases(options);
   Work work((2 * all.size() + options.box_counts.size()) * arities.size(), show_progress);
   Table objects{"arity_objects",
-                {"objects", "leaf_size", "arity", "nodes", "depth", "mean_depth", "children_per_node", "bytes",
-                 "node_pairs", "tests", "refit_seconds", "traversal_seconds"}},
+                {"objects", "leaf_size", "arity", "nodes", "depth", "mean_depth", "children_per_node",
+                 "bytes", "node_pairs", "tests", "refit_seconds", "traversal_seconds"}},
       colliding{"arity_colliding_children", {"objects", "arity", "nodes", "children", "above_half", "most"}},
       scenes{"arity_scene",
              {"boxes", "arity", "regions", "depth", "tests", "pairs", "first_seconds", "step_seconds"}};
@@ -149,7 +150,8 @@ Results run_arity(const ArityOptions& options, bool show_progress) {
     }
   }
   return {"arity",
-          {{"seed", fmt::format("{}", options.seed)}, {"poses of each case", fmt::format("{}", all.front().b.size())}},
+          {{"seed", fmt::format("{}", options.seed)},
+           {"poses of each case", fmt::format("{}", all.front().b.size())}},
           {std::move(objects), std::move(colliding), std::move(scenes)}};
 }
 

@@ -1,4 +1,4 @@
-#include "studies/broad_phases.hpp"
+#include "studies/studies.hpp"
 
 #include <fmt/core.h>
 
@@ -36,7 +36,8 @@ Following of_library(BroadPhaseMethod method) {
   return of_library(options);
 }
 Following plain(std::shared_ptr<PlainBroadPhase> program) {
-  return {[=](const std::vector<Aabb>& boxes) { return program->step(boxes); }, [=] { return program->tests(); }};
+  return {[=](const std::vector<Aabb>& boxes) { return program->step(boxes); },
+          [=] { return program->tests(); }};
 }
 
 struct Method {
@@ -45,7 +46,8 @@ struct Method {
   Following (*start)(const BoxField& field);
 };
 constexpr std::array methods{
-    Method{"octree of 2007", true, [](const BoxField& field) { return of_library(broad_phase_of_2007(field)); }},
+    Method{"octree of 2007", true,
+           [](const BoxField& field) { return of_library(broad_phase_of_2007(field)); }},
     Method{"octree of 2007, level-allowed grows", false,
            [](const BoxField& field) { return of_library(broad_phase_of_2007(field, true)); }},
     Method{"octree", false, [](const BoxField&) { return of_library(BroadPhaseMethod::octree); }},
@@ -56,21 +58,22 @@ constexpr std::array methods{
     Method{"plain octree", true,
            [](const BoxField& field) {
              const RootCube cube = field.cube();
-             return plain(plain_octree(cube.corner, cube.edge,
-                                       broad_phase_of_2007(field).scene_octree.max_level));
+             return plain(
+                 plain_octree(cube.corner, cube.edge, broad_phase_of_2007(field).scene_octree.max_level));
            }},
     Method{"plain sweep", true, [](const BoxField&) { return plain(plain_sweep()); }},
     Method{"plain brute force", true, [](const BoxField&) { return plain(plain_brute_force()); }}};
 
 constexpr std::size_t stride_of_few = 100;
 
-/// All methods in turn. `longest[m]`: the seconds of the slowest step of a method so far; those that would take
-/// too long at `skipped[m]` are left out.
-void measure_methods(std::size_t count, std::size_t stride, const BroadPhasesOptions& options, const std::vector<bool>& skipped,
-             std::vector<double>& longest, Table& table) {
+/// All methods in turn. `longest[m]`: the seconds of the slowest step of a method so far; those that would
+/// take too long at `skipped[m]` are left out.
+void measure_methods(std::size_t count, std::size_t stride, const BroadPhasesOptions& options,
+                     const std::vector<bool>& skipped, std::vector<double>& longest, Table& table) {
   BoxField field(count, options.seed, stride);
   const std::size_t steps = std::max<std::size_t>(30'000 / count, 1);
-  const int rounds = count < 100'000 ? options.rounds : std::min(options.rounds, 5);  // long steps have little noise
+  const int rounds =
+      count < 100'000 ? options.rounds : std::min(options.rounds, 5);  // long steps have little noise
   std::vector<std::optional<Following>> all(methods.size());
   for (int round = 0; round <= rounds; ++round) {
     std::vector<std::vector<Aabb>> frames;
@@ -88,7 +91,8 @@ void measure_methods(std::size_t count, std::size_t stride, const BroadPhasesOpt
                              }) /
                              static_cast<double>(frames.size());
       if (pairs.value_or(found) != found)
-        throw Error(fmt::format("{}: found {} pairs of {} boxes, other methods {}", methods[m].name, found, count, *pairs));
+        throw Error(fmt::format("{}: found {} pairs of {} boxes, other methods {}", methods[m].name, found,
+                                count, *pairs));
       pairs = found;
       longest[m] = std::max(longest[m], seconds);
       table.add({std::string(methods[m].name), std::string(stride == 1 ? "all" : "1 %"), std::uint64_t{count},
@@ -110,7 +114,8 @@ Table measure_broad_phases(const BroadPhasesOptions& options, Work& work) {
       if (stride > 1 && (boxes < 100 || boxes > 31'623)) continue;
       const double growth = before == 0 ? 1 : static_cast<double>(boxes) / static_cast<double>(before);
       for (std::size_t m = 0; m < methods.size(); ++m) {
-        skipped[m] = skipped[m] || (methods[m].is_quadratic && longest[m] * growth * growth > options.longest_step);
+        skipped[m] =
+            skipped[m] || (methods[m].is_quadratic && longest[m] * growth * growth > options.longest_step);
         longest[m] = 0;
       }
       measure_methods(boxes, stride, options, skipped, longest, table);

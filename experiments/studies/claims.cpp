@@ -1,4 +1,4 @@
-#include "studies/claims.hpp"
+#include "studies/studies.hpp"
 
 #include <fmt/core.h>
 
@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "plain/plain_broad_phase.hpp"
-#include "studies/arity.hpp"
 #include "studies/box_field.hpp"
 #include "supple/broad_phase.hpp"
 #include "supple/inspection.hpp"
@@ -90,9 +89,9 @@ Table cost_of_tests(const ClaimsOptions& options) {
     const char *code, *volume;
     std::uint32_t (*count)(const VolumeArrays&, std::size_t);
   };
-  constexpr std::array codes{Code{"vectors", "boxes", overlapping_boxes}, Code{"vectors", "spheres", overlapping_spheres},
-                             Code{"scalar", "boxes", plain_overlapping_boxes},
-                             Code{"scalar", "spheres", plain_overlapping_spheres}};
+  constexpr std::array codes{
+      Code{"vectors", "boxes", overlapping_boxes}, Code{"vectors", "spheres", overlapping_spheres},
+      Code{"scalar", "boxes", plain_overlapping_boxes}, Code{"scalar", "spheres", plain_overlapping_spheres}};
   const VolumeArrays volumes = volumes_of(options);
   const std::uint64_t tests = std::uint64_t{options.volumes} * options.volumes;
   Table table{"claims_tests", {"code", "volume", "round", "seconds", "tests", "overlaps"}};
@@ -102,8 +101,8 @@ Table cost_of_tests(const ClaimsOptions& options) {
       const double seconds = seconds_of([&] {
         for (std::size_t i = 0; i < options.volumes; ++i) found += code.count(volumes, i);
       });
-      table.add({std::string(code.code), std::string(code.volume), static_cast<std::uint64_t>(round), seconds, tests,
-                 found});
+      table.add({std::string(code.code), std::string(code.volume), static_cast<std::uint64_t>(round), seconds,
+                 tests, found});
     }
   }
   return table;
@@ -141,16 +140,16 @@ Table region_tests(const ClaimsOptions& options) {
       for (const SceneRegion& region : following[test]->regions()) placements += region.object_count;
       // The first step of the octree that follows is that of a new one.
       if (round > 0)
-        table.add({std::string(words<RegionSphereTest>[test]), static_cast<std::uint64_t>(round), of_fresh, of_step,
-                   placements, pairs});
+        table.add({std::string(words<RegionSphereTest>[test]), static_cast<std::uint64_t>(round), of_fresh,
+                   of_step, placements, pairs});
     }
     field.move();
   }
   return table;
 }
 
-/// Section 7: spheres of smaller and smaller triangles, and sheets of more and more triangles of one size. `size`
-/// is that of the object in triangles.
+/// Section 7: spheres of smaller and smaller triangles, and sheets of more and more triangles of one size.
+/// `size` is that of the object in triangles.
 Table depths(const ClaimsOptions& options) {
   Table table{"claims_depths", {"surface", "triangles", "size", "depth", "mean_depth"}};
   for (std::uint32_t f = 4; f <= options.largest_frequency; f *= 2)
@@ -160,18 +159,21 @@ Table depths(const ClaimsOptions& options) {
   return table;
 }
 
-/// Sections 5 and 7: boxes by the number of regions that they overlap, with regions as long as the longest box.
+/// Sections 5 and 7: boxes by the number of regions that they overlap, with regions as long as the longest
+/// box.
 Table regions_of_objects(const ClaimsOptions& options) {
   constexpr std::size_t most = 8;
   const BoxField field(options.spheres, options.seed);
   std::array<std::uint64_t, most + 1> with{};
   for (const Aabb& box : field.boxes()) {
     std::size_t regions = 1;
-    for (int axis = 0; axis < 3; ++axis) regions *= std::floor(box.min[axis]) == std::floor(box.max[axis]) ? 1 : 2;
+    for (int axis = 0; axis < 3; ++axis)
+      regions *= std::floor(box.min[axis]) == std::floor(box.max[axis]) ? 1 : 2;
     ++with[regions];
   }
   Table table{"claims_object_regions", {"regions", "boxes"}};
-  for (std::size_t regions = 1; regions <= most; regions *= 2) table.add({std::uint64_t{regions}, with[regions]});
+  for (std::size_t regions = 1; regions <= most; regions *= 2)
+    table.add({std::uint64_t{regions}, with[regions]});
   return table;
 }
 
@@ -213,9 +215,16 @@ ClaimsOptions claims_options(bool quick) {
 }
 
 Results run_claims(const ClaimsOptions& options, bool show_progress) {
-  constexpr std::array<Table (*)(const ClaimsOptions&), 10> measurements{
-      cost_of_tests,          region_tests, depths,          regions_of_objects,      spheres_of_the_equations,
-      translation_of_volumes, loops,        steps_of_models, energies_of_integrators, areas_and_strains};
+  constexpr std::array<Table (*)(const ClaimsOptions&), 10> measurements{cost_of_tests,
+                                                                         region_tests,
+                                                                         depths,
+                                                                         regions_of_objects,
+                                                                         spheres_of_the_equations,
+                                                                         translation_of_volumes,
+                                                                         loops,
+                                                                         steps_of_models,
+                                                                         energies_of_integrators,
+                                                                         areas_and_strains};
   Work work(measurements.size(), show_progress);
   Results results{"claims", {{"seed", fmt::format("{}", options.seed)}}};
   for (const auto measure : measurements) work.done(1, results.tables.emplace_back(measure(options)).name);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "studies/claims.hpp"
+#include "studies/studies.hpp"
 #include "supple/models.hpp"
 #include "supple/motion.hpp"
 #include "supple/scene.hpp"
@@ -70,7 +70,8 @@ Table translation_of_volumes(const ClaimsOptions& options) {
   return table;
 }
 
-/// Section 5.2: the boxes of the bodies of table1_9 are made in the loop of the motion, or in one of their own.
+/// Section 5.2: the boxes of the bodies of table1_9 are made in the loop of the motion, or in one of their
+/// own.
 Table loops(const ClaimsOptions& options) {
   Table table{"claims_loops", {"loops", "round", "seconds"}};
   std::vector<Simulation> simulations;
@@ -121,7 +122,8 @@ Table energies_of_integrators(const ClaimsOptions& options) {
     for (const double part : parts) {
       const auto kept =
           energy_kept(vibrating(mesh, static_cast<Integrator>(k)), part * stable, options.motion_seconds);
-      table.add({std::string(words<Integrator>[k]), part * stable, part, kept ? Cell(*kept) : Cell("unstable")});
+      table.add(
+          {std::string(words<Integrator>[k]), part * stable, part, kept ? Cell(*kept) : Cell("unstable")});
     }
   }
   return table;
@@ -133,11 +135,13 @@ Table areas_and_strains(const ClaimsOptions& options) {
   Table table{"claims_areas",
               {"scene", "preserved", "seconds", "mean_area_error", "mean_strain", "largest_strain"}};
   const auto built_in = [](const char* name) { return Table1Scene{Table1Scene::Source::built_in, name}; };
-  for (const Table1Scene& scene : {mixed_scene(3), mixed_scene(9), built_in("three_humans"), built_in("three_bikes")}) {
+  for (const Table1Scene& scene :
+       {mixed_scene(3), mixed_scene(9), built_in("three_humans"), built_in("three_bikes")}) {
     for (const bool preserved : {true, false}) {
       cli::Input input = read_scene(scene, {}, options.seed);
       for (cli::InputObject& object : input.objects) {
-        if (auto& springs = std::get<MassSpringMotion>(*object.motion).springs; !preserved) springs.area_stiffness = 0;
+        if (auto& springs = std::get<MassSpringMotion>(*object.motion).springs; !preserved)
+          springs.area_stiffness = 0;
       }
       Variant variant{{}, BoundingVolume::aabb};
       variant.method.scene.contacts = ContactKinds::none;

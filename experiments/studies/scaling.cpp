@@ -1,4 +1,4 @@
-#include "studies/scaling.hpp"
+#include "studies/studies.hpp"
 
 #include <fmt/core.h>
 
@@ -18,11 +18,12 @@ struct Pose {
   const char* name;
   TriangleMesh (*place)(TriangleMesh mesh);
 };
-constexpr std::array<Pose, 2> poses{Pose{"crossing",
-                                         [](TriangleMesh mesh) {
-                                           return moved(turned(std::move(mesh)), {1, 0.125, 0.0625});
-                                         }},
-                                    Pose{"coinciding", [](TriangleMesh mesh) { return turned(std::move(mesh)); }}};
+constexpr std::array<Pose, 2> poses{
+    Pose{"crossing",
+         [](TriangleMesh mesh) {
+           return moved(turned(std::move(mesh)), {1, 0.125, 0.0625});
+         }},
+    Pose{"coinciding", [](TriangleMesh mesh) { return turned(std::move(mesh)); }}};
 
 /// The number of triangle corners that are read to fit a sphere to each node: each triangle once per level.
 double sphere_reads(const OctreeStatistics& octree) {
@@ -83,8 +84,8 @@ Results run_scaling(const ScalingOptions& options, bool show_progress) {
   Results results{"scaling", {{"seed", fmt::format("{}", options.broad_phases.seed)}}};
   results.tables.push_back(measure_broad_phases(options.broad_phases, work));
   Table counts{"scaling_vertices",
-               {"pose", "vertices", "triangles", "depth", "node_pairs", "tests", "candidates", "triangles_refitted",
-                "sphere_reads"}},
+               {"pose", "vertices", "triangles", "depth", "node_pairs", "tests", "candidates",
+                "triangles_refitted", "sphere_reads"}},
       times{"scaling_vertices_times", {"quantity", "vertices", "round", "seconds"}};
   measure_vertices(options, work, counts, times);
   results.tables.push_back(std::move(counts));

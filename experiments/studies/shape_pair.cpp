@@ -33,8 +33,8 @@ TriangleMesh moved(TriangleMesh mesh, Vec3d offset) {
   return mesh;
 }
 
-PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree, int rounds,
-                      const SceneOptions& given) {
+PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
+                      int rounds, const SceneOptions& given) {
   SceneOptions options = given;
   options.contacts = ContactKinds::none;
   options.threads = 1;

@@ -24,8 +24,8 @@ struct PairCost {
 
 /// Moves both objects by 2^-30 in every round, so that every octree is refitted. Runs the stages separately,
 /// without exact tests and with one thread. The octrees are regular.
-PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree, int rounds,
-                      const SceneOptions& options = {});
+PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
+                      int rounds, const SceneOptions& options = {});
 
 /// The descent into the regular octrees of both objects.
 NodePairList node_pairs_of(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree);

@@ -1,4 +1,4 @@
-#include "studies/volumes.hpp"
+#include "studies/studies.hpp"
 
 #include <fmt/core.h>
 
@@ -116,7 +116,8 @@ void measure(const Poses& shapes, const Choice& variant, const VolumesOptions& o
                .threads = 1,
                .comparison = {.sphere_fit = variant.fit}});
   double build = INFINITY, refit = INFINITY, query = INFINITY;
-  std::uint64_t bytes = 0, object_pairs = 0, node_pairs = 0, tests = 0, candidates = 0, contacts = 0, hash = 0;
+  std::uint64_t bytes = 0, object_pairs = 0, node_pairs = 0, tests = 0, candidates = 0, contacts = 0,
+                hash = 0;
   std::vector<ObjectId> ids;
   for (int round = 0; round < options.rounds; ++round) {
     for (const ObjectId id : ids) scene.remove(id);
@@ -140,8 +141,8 @@ void measure(const Poses& shapes, const Choice& variant, const VolumesOptions& o
     query = std::min(query, queries);
   }
   for (const ObjectId id : ids) bytes += SceneInspector(scene).octree_statistics(id).bytes;
-  table.add({shapes.name, variant.name, build, refit, query, bytes, object_pairs, node_pairs, tests, candidates,
-             contacts, fmt::format("{:016x}", hash)});
+  table.add({shapes.name, variant.name, build, refit, query, bytes, object_pairs, node_pairs, tests,
+             candidates, contacts, fmt::format("{:016x}", hash)});
 }
 
 }  // namespace
@@ -165,10 +166,10 @@ Results run_volumes(const VolumesOptions& options, bool show_progress) {
                    {"frames of each deforming scene", fmt::format("{}", options.deformed_frames)},
                    {"rounds", fmt::format("{}", options.rounds)}}};
   for (const bool is_volume : {true, false}) {
-    Table& table = results.tables.emplace_back(
-        Table{is_volume ? "volumes" : "volumes_builds",
-              {"case", is_volume ? "volume" : "build", "build_seconds", "refit_seconds", "query_seconds", "bytes",
-               "object_pairs", "node_pairs", "tests", "candidates", "contacts", "hash_of_contacts"}});
+    Table& table = results.tables.emplace_back(Table{
+        is_volume ? "volumes" : "volumes_builds",
+        {"case", is_volume ? "volume" : "build", "build_seconds", "refit_seconds", "query_seconds", "bytes",
+         "object_pairs", "node_pairs", "tests", "candidates", "contacts", "hash_of_contacts"}});
     for (const Poses& shapes : cases) {
       for (const Choice& variant : is_volume ? volumes : builds) {
         measure(shapes, variant, options, table);

@@ -35,9 +35,11 @@ std::vector<Variant> method_settings() {
     add(fmt::format("level-allowed {} of the scene", level),
         [=](Table1Method& m) { m.scene.scene_octree.max_level = level; });
   for (const std::uint32_t level : {1u, 2u, 3u, 4u})
-    add(fmt::format("level-allowed {} of the objects", level), [=](Table1Method& m) { m.octree.max_level = level; });
+    add(fmt::format("level-allowed {} of the objects", level),
+        [=](Table1Method& m) { m.octree.max_level = level; });
   for (const std::uint32_t size : {4u, 16u})
-    add(fmt::format("leaves of up to {} triangles", size), [=](Table1Method& m) { m.octree.leaf_size = size; });
+    add(fmt::format("leaves of up to {} triangles", size),
+        [=](Table1Method& m) { m.octree.leaf_size = size; });
   add("spheres of eq. 3 and 4", [](Table1Method& m) { m.scene.comparison.sphere_fit = SphereFit::box; });
   return all;
 }
@@ -60,14 +62,15 @@ std::vector<Setting> settings() {
                      m.springs.damping *= std::sqrt(factor);
                    }});
   for (const double factor : {0.0, 0.5, 2.0})
-    all.push_back({fmt::format("forces × {}", factor), {}, [=](MassSpringMotion& m) { m.random_force *= factor; }});
+    all.push_back(
+        {fmt::format("forces × {}", factor), {}, [=](MassSpringMotion& m) { m.random_force *= factor; }});
   return all;
 }
 
 }  // namespace
 
-bool run_sensitivity(const Table1Options& options, bool quick, const std::filesystem::path& folder, bool resume,
-                     const cli::Interruption& interruption, bool show_progress) {
+bool run_sensitivity(const Table1Options& options, bool quick, const std::filesystem::path& folder,
+                     bool resume, const cli::Interruption& interruption, bool show_progress) {
   make_folder(folder);
   std::vector<Motion> motions;
   for (const std::uint32_t objects : {3u, 6u, 9u}) {
@@ -87,7 +90,8 @@ bool run_sensitivity(const Table1Options& options, bool quick, const std::filesy
     }
   }
   RunLog log(folder, "sensitivity", resume);
-  return run_all(motions, {.runs = quick ? 2 : options.runs, .seed = options.seed, .threads = options.threads}, log,
+  return run_all(motions,
+                 {.runs = quick ? 2 : options.runs, .seed = options.seed, .threads = options.threads}, log,
                  interruption, show_progress);
 }
 

@@ -62,7 +62,8 @@ bool run_table1(const Table1Options& options, const fs::path& folder, bool resum
     std::vector<Motion> motions;
     for (const Table1Scene& scene : options.scenes) {
       Motion& motion = motions.emplace_back(Motion{scene, {}, {}, seconds});
-      for (const BoundingVolume volume : options.method.volumes) motion.variants.push_back({options.method, volume});
+      for (const BoundingVolume volume : options.method.volumes)
+        motion.variants.push_back({options.method, volume});
     }
     RunLog log(folder, name, resume);
     return run_all(motions,

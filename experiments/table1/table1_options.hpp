@@ -73,9 +73,9 @@ bool has_effect(const Table1Method& method, std::string_view key);
 struct Table1Options {
   std::vector<Table1Scene> scenes;
   Table1Method method{};
-  std::uint32_t runs = 5;                 ///< ≥ 1; run k has the seed `seed` + k
-  double simulated_seconds = 600;         ///< per run that is counted in simulated time; 0: no such runs
-  std::optional<double> program_clock{};  ///< seconds of detection and motion per run; none: no such runs
+  std::uint32_t runs = 5;                  ///< ≥ 1; run k has the seed `seed` + k
+  double simulated_seconds = 600;          ///< per run that is counted in simulated time; 0: no such runs
+  std::optional<double> program_clock{};   ///< seconds of detection and motion per run; none: no such runs
   std::optional<std::uint32_t> threads{};  ///< parallel runs in simulated time; none and 0: one per core
   std::uint64_t seed = 1;
 };

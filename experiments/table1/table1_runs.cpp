@@ -92,9 +92,9 @@ class Follower {
 /// The run_columns that say which run a row is, and all run_columns.
 constexpr std::size_t key_columns = 6;
 const std::vector<std::string> run_columns{
-    "setting",        "scene",             "edge",           "volume",      "seed",         "objects",
-    "broad",          "narrow",            "exact",          "steps",       "bounds_seconds", "detection_seconds",
-    "motion_seconds", "mean_strain",       "least_strain",   "most_strain", "largest_strain", "failure"};
+    "setting",        "scene",       "edge",         "volume",      "seed",           "objects",
+    "broad",          "narrow",      "exact",        "steps",       "bounds_seconds", "detection_seconds",
+    "motion_seconds", "mean_strain", "least_strain", "most_strain", "largest_strain", "failure"};
 
 /// Steps of the motion in `seconds` of simulated time.
 std::uint64_t steps_in(double seconds, const cli::Input& input) {
@@ -183,14 +183,16 @@ RunLog::RunLog(const std::filesystem::path& folder, const std::string& name, boo
     const std::string text = cli::read_text(path);
     const CsvText csv = parse_csv(text);
     if (!csv.rows.empty() && csv.rows.front() != run_columns)
-      throw Error(fmt::format(
-          "{}: has other run_columns than this program writes; leave out --resume to start again", path.string()));
+      throw Error(
+          fmt::format("{}: has other run_columns than this program writes; leave out --resume to start again",
+                      path.string()));
     for (std::size_t i = 1; i < csv.rows.size(); ++i) {
       const std::vector<std::string>& row = csv.rows[i];
       const auto is_number = [](const std::string& field) {
         return field.find_first_not_of("0123456789.+-e") == std::string::npos;
       };
-      if (row.size() != run_columns.size() || !std::all_of(row.begin() + key_columns, row.end() - 1, is_number))
+      if (row.size() != run_columns.size() ||
+          !std::all_of(row.begin() + key_columns, row.end() - 1, is_number))
         throw Error(fmt::format("{}: row {} is not a run; remove it, or leave out --resume to start again",
                                 path.string(), i));
       done_.insert(csv_of(std::vector<Cell>(row.begin(), row.begin() + key_columns)));
@@ -205,12 +207,14 @@ RunLog::RunLog(const std::filesystem::path& folder, const std::string& name, boo
   file_->check();
 }
 
-bool RunLog::has(const std::vector<Cell>& key) const { return done_.contains(csv_of(key)); }
+bool RunLog::has(const std::vector<Cell>& key) const {
+  return done_.contains(csv_of(key));
+}
 
 void RunLog::add(std::vector<Cell> row, const RunCounts& run) {
-  row.insert(row.end(), {run.broad, run.narrow, run.exact, run.steps, run.bounds_seconds, run.detection_seconds,
-                         run.motion_seconds, run.strain.mean, run.strain.least, run.strain.most, run.strain.largest,
-                         run.failure});
+  row.insert(row.end(), {run.broad, run.narrow, run.exact, run.steps, run.bounds_seconds,
+                         run.detection_seconds, run.motion_seconds, run.strain.mean, run.strain.least,
+                         run.strain.most, run.strain.largest, run.failure});
   const std::string line = csv_of(row);
   std::fwrite(line.data(), 1, line.size(), file_->stream());
   std::fflush(file_->stream());
@@ -229,13 +233,18 @@ bool run_all(const std::vector<Motion>& motions, const RunOptions& options, RunL
   double total = 0;
   // In the order of the table, so that an interrupted experiment has complete rows.
   for (const Motion& motion : motions) {
-    const cli::Input input = read_scene(motion.scene, motion.variants.front().method.integrator, options.seed);
+    const cli::Input input =
+        read_scene(motion.scene, motion.variants.front().method.integrator, options.seed);
     const std::optional<double> edge = edge_of(input);
     for (std::uint32_t run = 0; run < options.runs; ++run) {
       Task task{motion, options.seed + run, steps_in(motion.seconds, input)};
       std::erase_if(task.motion.variants, [&](const Variant& variant) {
-        std::vector<Cell> key{variant.setting, motion.scene.name, edge ? Cell(*edge) : Cell(),
-                              std::string(word_of(variant.volume)), task.seed, std::uint64_t{input.objects.size()}};
+        std::vector<Cell> key{variant.setting,
+                              motion.scene.name,
+                              edge ? Cell(*edge) : Cell(),
+                              std::string(word_of(variant.volume)),
+                              task.seed,
+                              std::uint64_t{input.objects.size()}};
         if (log.has(key)) return true;
         task.keys.push_back(std::move(key));
         return false;

@@ -62,7 +62,8 @@ struct Variant {
 /// The simulation of an input as a variant sees it, with one thread; its options are set in the input.
 Simulation build_variant(cli::Input& input, const Variant& variant);
 
-/// A scene, what changes in it, and the variants that see the same motion; at least one, all of one integrator.
+/// A scene, what changes in it, and the variants that see the same motion; at least one, all of one
+/// integrator.
 struct Motion {
   Table1Scene scene;
   std::vector<Variant> variants;
@@ -70,17 +71,17 @@ struct Motion {
   double seconds = 600;  ///< of each run, by its clock
 };
 
-/// One run of a motion. Each variant detects after each step, in turn, forwards and backwards; its counts end when
-/// `go_on(its counts so far)` returns false, and the run ends after the last. With `exact`, the contacts of each
-/// variant are counted, too, outside of its clock.
+/// One run of a motion. Each variant detects after each step, in turn, forwards and backwards; its counts end
+/// when `go_on(its counts so far)` returns false, and the run ends after the last. With `exact`, the contacts
+/// of each variant are counted, too, outside of its clock.
 std::vector<RunCounts> run_scene(const Motion& motion, std::uint64_t seed, bool exact,
                                  const std::function<bool(const RunCounts&)>& go_on);
 
 /// The complete runs, in a CSV file that gets a row as soon as a run is complete.
 class RunLog {
  public:
-  /// Starts the file in a folder, or with `resume` keeps its rows and its head. Throws `Error` when the file is
-  /// not such a table.
+  /// Starts the file in a folder, or with `resume` keeps its rows and its head. Throws `Error` when the file
+  /// is not such a table.
   RunLog(const std::filesystem::path& folder, const std::string& name, bool resume);
 
   bool has(const std::vector<Cell>& key) const;
@@ -99,8 +100,8 @@ struct RunOptions {
   std::optional<std::uint32_t> threads{};  ///< parallel runs of one thread each; none: one per core
 };
 
-/// Runs all motions that are not in the log. Runs by the clock of the program run one after the other. Returns
-/// false after an interruption.
+/// Runs all motions that are not in the log. Runs by the clock of the program run one after the other.
+/// Returns false after an interruption.
 bool run_all(const std::vector<Motion>& motions, const RunOptions& options, RunLog& log,
              const cli::Interruption& interruption, bool show_progress);
 

@@ -11,7 +11,7 @@ sys.path.insert(0, str(ROOT / "experiments"))
 from judge.pages import try_debians_python  # noqa: E402
 
 try:
-    from judge import claims, paper
+    from judge import claims, paper, table1, verdicts  # noqa: F401: claims fills the register
     from judge.estimates import Estimate, Test, counted, exponent_of, mean_of, quotient, ratio_of, ratio_of_sums, set_levels, text_of
     from judge.tables import MissingTable, Tables
 except ImportError:
@@ -96,7 +96,7 @@ class Claims(unittest.TestCase):
                     "narrow": str(number), "steps": "100", "detection_seconds": "1", "motion_seconds": "1", "failure": ""} | more
                 lines.append(",".join(row[column] for column in COLUMNS))
         (self.folder / "table1_runs.csv").write_text("\n".join(["# commit: 0", *lines, ""]))
-        return {claim.name: claim for claim in claims.judged(Tables(self.folder))}
+        return {claim.name: claim for claim in verdicts.judged(Tables(self.folder))}
 
     def test_a_verdict_names_the_cases_in_which_it_holds(self):
         found = self.judged([("table1_3", "aabb", (10, 11, 12, 11, 10), {}), ("table1_3", "sphere", (5, 6, 5, 5, 6), {}),
@@ -133,21 +133,21 @@ class Claims(unittest.TestCase):
         self.assertEqual(compared[3, "aabb", "broad"], "agrees")  # 600 / 24.6 = 24.390
         self.assertEqual(compared[3, "sphere", "broad"], "cut off")  # 600 / 12.4 = 48.387, the text has 48.38
         self.assertEqual([case for case, how in compared.items() if how == "differs"], [(9, "aabb", "broad")])
-        self.assertAlmostEqual(claims.paper_ratio(3, "broad").mean, 12.4 / 24.6)
+        self.assertAlmostEqual(table1.paper_ratio(3, "broad").mean, 12.4 / 24.6)
 
     def test_each_claim_has_a_name_of_its_own_and_a_quantity(self):
-        names = [claim.name for claim, _ in claims.CLAIMS]
+        names = [claim.name for claim, _ in verdicts.CLAIMS]
         self.assertEqual(len(names), len(set(names)))
-        for claim, _ in claims.CLAIMS:
+        for claim, _ in verdicts.CLAIMS:
             self.assertTrue(claim.text.endswith(".") and claim.quantity, claim.name)
 
     def test_a_missing_table_is_no_error_and_a_missing_column_is(self):
-        self.assertEqual(claims.judged(Tables(self.folder)), [])
+        self.assertEqual(verdicts.judged(Tables(self.folder)), [])
         with self.assertRaises(MissingTable):
             Tables(self.folder).rows("table1_runs")
         (self.folder / "claims_depths.csv").write_text("surface\nsphere\n")
         with self.assertRaises(KeyError):
-            claims.judged(Tables(self.folder))
+            verdicts.judged(Tables(self.folder))
 
 
 if __name__ == "__main__":

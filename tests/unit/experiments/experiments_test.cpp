@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "experiments/plain/plain_broad_phase.hpp"
-#include "experiments/studies/arity.hpp"
 #include "experiments/studies/box_field.hpp"
-#include "experiments/studies/scaling.hpp"
 #include "experiments/studies/shape_pair.hpp"
+#include "experiments/studies/studies.hpp"
 #include "supple/models.hpp"
 
 namespace supple::experiments::experiments_test {
@@ -49,8 +48,12 @@ TEST(ShapePair, EveryArityFindsTheSameCandidates) {
   }
 }
 
-std::uint64_t count_of(const Cell& cell) { return std::get<std::uint64_t>(cell); }
-std::string word_of(const Cell& cell) { return std::get<std::string>(cell); }
+std::uint64_t count_of(const Cell& cell) {
+  return std::get<std::uint64_t>(cell);
+}
+std::string word_of(const Cell& cell) {
+  return std::get<std::string>(cell);
+}
 
 TEST(BroadPhases, AllMethodsFindTheSamePairsInEachRound) {
   BroadPhasesOptions options;
@@ -67,7 +70,8 @@ TEST(BroadPhases, AllMethodsFindTheSamePairsInEachRound) {
     }
   }
   EXPECT_EQ(rows.size(), 10u);
-  for (const auto& [method, count] : rows) EXPECT_EQ(count, 15u) << method << ": three sizes, two with few in motion";
+  for (const auto& [method, count] : rows)
+    EXPECT_EQ(count, 15u) << method << ": three sizes, two with few in motion";
 }
 
 TEST(BroadPhases, QuadraticMethodsStopInTime) {
@@ -95,7 +99,8 @@ TEST(PlainBroadPhase, FindsWhatBruteForceFindsAlsoOutsideOfTheCube) {
     // A cube in the middle half of the field: many boxes lie outside of it or across its faces.
     const Vec3d corner{cube.edge / 4, cube.edge / 4, cube.edge / 4};
     std::vector<std::unique_ptr<PlainBroadPhase>> octrees;
-    for (const std::uint32_t level : {0u, 1u, 2u, 4u}) octrees.push_back(plain_octree(corner, cube.edge / 2, level));
+    for (const std::uint32_t level : {0u, 1u, 2u, 4u})
+      octrees.push_back(plain_octree(corner, cube.edge / 2, level));
     for (int step = 0; step < 20; ++step) {
       const std::size_t pairs = brute->step(field.boxes());
       EXPECT_EQ(sweep->step(field.boxes()), pairs);
@@ -104,7 +109,8 @@ TEST(PlainBroadPhase, FindsWhatBruteForceFindsAlsoOutsideOfTheCube) {
     }
   }
   // Boxes that touch at a middle plane, and equal boxes.
-  const std::vector<Aabb> touching{{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{0, 0, 0}, {1, 1, 1}}};
+  const std::vector<Aabb> touching{
+      {{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{0, 0, 0}, {1, 1, 1}}};
   EXPECT_EQ(plain_brute_force()->step(touching), 6u);
   EXPECT_EQ(plain_octree({0, 0, 0}, 2, 3)->step(touching), 6u);
 }

@@ -135,9 +135,7 @@ class Table1Folder : public testing::Test {
   void SetUp() override { fs::remove_all(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
 
-  bool run(bool resume) {
-    return run_table1(options_, folder_, resume, interruption_, false);
-  }
+  bool run(bool resume) { return run_table1(options_, folder_, resume, interruption_, false); }
   std::string read(const char* name) const {
     std::ifstream stream(folder_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -224,7 +222,8 @@ TEST_F(Table1Folder, ResumeNeedsTheSameOptions) {
   error = error_of([&] { run(true); });
   EXPECT_NE(error.find("--integrator was not given"), std::string::npos) << error;
   options_ = tiny();
-  std::ofstream(folder_ / "table1_runs.csv", std::ios::app) << ",table1_3,6,aabb,1,3,x,1,1,1,1,1,1,0,0,0,0,\n";
+  std::ofstream(folder_ / "table1_runs.csv", std::ios::app)
+      << ",table1_3,6,aabb,1,3,x,1,1,1,1,1,1,0,0,0,0,\n";
   EXPECT_NE(error_of([&] { run(true); }).find("row 5 is not a run"), std::string::npos);
 }
 
