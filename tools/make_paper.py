@@ -9,7 +9,8 @@ committed table. Otherwise it also draws docs/images/what_holds.svg. The templat
 functions:
 
   verdict(NAME)           the verdict on a claim, with its numbers when these are few
-  number(NAME, CASE)      the number of a claim in a case
+  word(NAME)              only the verdict
+  number(NAME, CASE)      the number of a claim in a case and its interval
   listing(TABLE)          a table of judge/report.py: rates, ratios, averages, strains or changes
   head(TABLE, KEY)        from the comments of TABLE.csv: commit, processor, command
   claims_table()          all claims of the paper in its order, then our own
@@ -34,8 +35,8 @@ try:
     import jinja2
 
     from judge import report, verdicts
-    from judge.estimates import text_of
     from judge.tables import Tables
+    from judge.text import rounded
 except ImportError:
     try_debians_python()
     raise
@@ -44,30 +45,38 @@ except ImportError:
 class Results:
     def __init__(self, folder):
         self.tables = Tables(*sorted(path for path in folder.iterdir() if path.is_dir()))
+        self.names = {claim.name for claim, _ in verdicts.CLAIMS}
         self.claims = {claim.name: claim for claim in verdicts.judged(self.tables)}
 
     def verdict(self, name):
+        if name not in self.claims and name in self.names:
+            return f"{self.word(name)}: the committed tables do not decide it."
         claim = self.claims[name]
-        numbers = f" ({claim.quantity}: {claim.numbers})" if len(claim.tests) <= FEW else ""
-        return f"**{claim.verdict}**{numbers}."
+        return f"**{claim.verdict}**" + (f": {claim.quantity} {claim.numbers}." if len(claim.tests) <= FEW else ".")
+
+    def word(self, name):
+        return f"**{self.claims[name].verdict}**" if name in self.claims else "**Not measured**"
 
     def number(self, name, case=""):
         found = [test for test in self.claims[name].tests if test.when == case]
         if not found:
             raise KeyError(f"{name} has no case {case!r}, but {[test.when for test in self.claims[name].tests]}")
-        return text_of(found[0].number, found[0].level)
+        number, level = found[0].number, found[0].level
+        low, high = number.interval(level)
+        interval = f" ({rounded(low, 2)} to {rounded(high, 2)})" if number.error else ""
+        return f"{rounded(number.mean)}{interval}"
 
     def listing(self, name):
         heading, rows, _, _ = getattr(report, name)(self.tables)
         return markdown(heading, rows)
 
     def claims_table(self):
-        in_order = sorted(self.claims.values(), key=lambda claim: [float(part) for part in claim.where.split(", ")] or [99])
+        in_order = sorted(self.claims.values(), key=lambda claim: [float(part) for part in (claim.where or "99").split(", ")])
         return markdown(["Claim", "Section, paragraph", "Read as", "Verdict", "Number [interval]"],
                         [[claim.text, claim.where or "ours", claim.reading, claim.verdict, f"{claim.quantity}: {claim.numbers}"] for claim in in_order])
 
     def functions(self):
-        return {name: getattr(self, name) for name in ("verdict", "number", "listing", "claims_table")} | {
+        return {name: getattr(self, name) for name in ("verdict", "word", "number", "listing", "claims_table")} | {
             "head": lambda name, key: self.tables.head(name)[key]}
 
 

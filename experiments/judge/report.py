@@ -303,7 +303,6 @@ def draw_what_holds(tables, path):
         axes.set_title(title, loc="left", fontsize=12)
         axes.set_xlabel("objects")
         axes.axhline(1, color="#888888", linewidth=0.8)
-        axes.set_xscale("log")
         axes.grid(color="#ddd", linewidth=0.7)
     for clock, color in zip(CLOCKS, COLORS):
         points = [(objects, table1.ratio(tables, f"table1_{objects}", "broad", clock)) for objects in table1.mixed(tables, clock)]
@@ -315,7 +314,11 @@ def draw_what_holds(tables, path):
     for brute, octree, label, color in (("plain brute force", "plain octree", "programs of 2007's kind", COLORS[0]), ("brute force", "octree", "Supple today", COLORS[1])):
         sizes = [boxes for boxes in claims.box_counts(tables, octree) if boxes in claims.box_counts(tables, brute)]
         right.plot(sizes, [claims.step_ratio(tables, brute, octree, boxes).mean for boxes in sizes], marker="o", markersize=4, color=color, label=label)
-    right.set_yscale("log")
+    pages.set_logarithmic(right.yaxis, 0.01, 1000)
+    pages.set_logarithmic(right.xaxis, 3, 100_000)
+    pages.set_logarithmic(left.xaxis, 3, 10_000)
+    left.set_xticks(sizes_of_left := table1.mixed(tables), sizes_of_left)
+    left.set_ylim(0, 1.6)
     for axes in (left, right):
         axes.legend(frameon=False)
     figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})

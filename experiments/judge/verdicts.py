@@ -40,7 +40,7 @@ class Claim:
     @property
     def numbers(self):
         """All numbers with their intervals and cases."""
-        return "; ".join(text_of(test.number, test.level) + (f" ({test.when.removeprefix('there are ')})" if test.when else "") for test in self.tests)
+        return "; ".join(text_of(test.number, test.level) + (f" if {test.when}" if test.when else "") for test in self.tests)
 
 
 def in_one(cases):
