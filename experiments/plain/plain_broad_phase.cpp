@@ -136,6 +136,17 @@ std::uint32_t plain_overlapping_boxes(const VolumeArrays& v, std::size_t i) {
   return count;
 }
 
+std::uint32_t plain_overlapping_boxes_without_branches(const VolumeArrays& v, std::size_t i) {
+  std::uint32_t count = 0;
+  for (std::size_t j = 0; j < v.radius.size(); ++j) {
+    count += static_cast<std::uint32_t>(
+        static_cast<int>(v.low[0][j] <= v.high[0][i]) & static_cast<int>(v.high[0][j] >= v.low[0][i]) &
+        static_cast<int>(v.low[1][j] <= v.high[1][i]) & static_cast<int>(v.high[1][j] >= v.low[1][i]) &
+        static_cast<int>(v.low[2][j] <= v.high[2][i]) & static_cast<int>(v.high[2][j] >= v.low[2][i]));
+  }
+  return count;
+}
+
 std::uint32_t plain_overlapping_spheres(const VolumeArrays& v, std::size_t i) {
   std::uint32_t count = 0;
   for (std::size_t j = 0; j < v.radius.size(); ++j) {

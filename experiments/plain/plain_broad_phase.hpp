@@ -36,8 +36,10 @@ struct VolumeArrays {
   std::array<std::vector<float>, 3> low, high, center;
   std::vector<float> radius;
 };
-/// The number of volumes that overlap volume i, tested one by one.
+/// The number of volumes that overlap volume i, tested one by one; of boxes, the first comparison that fails
+/// ends a test, or all are made.
 std::uint32_t plain_overlapping_boxes(const VolumeArrays& volumes, std::size_t i);
+std::uint32_t plain_overlapping_boxes_without_branches(const VolumeArrays& volumes, std::size_t i);
 std::uint32_t plain_overlapping_spheres(const VolumeArrays& volumes, std::size_t i);
 
 }  // namespace supple::experiments

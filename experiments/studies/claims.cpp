@@ -91,7 +91,9 @@ Table cost_of_tests(const ClaimsOptions& options) {
   };
   constexpr std::array codes{
       Code{"vectors", "boxes", overlapping_boxes}, Code{"vectors", "spheres", overlapping_spheres},
-      Code{"scalar", "boxes", plain_overlapping_boxes}, Code{"scalar", "spheres", plain_overlapping_spheres}};
+      Code{"scalar", "boxes", plain_overlapping_boxes},
+      Code{"scalar", "boxes without branches", plain_overlapping_boxes_without_branches},
+      Code{"scalar", "spheres", plain_overlapping_spheres}};
   const VolumeArrays volumes = volumes_of(options);
   const std::uint64_t tests = std::uint64_t{options.volumes} * options.volumes;
   Table table{"claims_tests", {"code", "volume", "round", "seconds", "tests", "overlaps"}};
