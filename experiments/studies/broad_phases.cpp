@@ -21,13 +21,16 @@ namespace {
 /// A method while it follows the boxes.
 struct Following {
   std::function<std::size_t(const std::vector<Aabb>&)> step;  ///< the number of pairs
-  std::function<std::uint64_t()> tests;                       ///< of the last step
+  std::function<std::uint64_t()> tests;                       ///< of the last step; of sweep3, exchanges
 };
 
 Following of_library(const BroadPhaseOptions& options) {
   const auto broad_phase = std::make_shared<BroadPhase>(options);
   return {[=](const std::vector<Aabb>& boxes) { return broad_phase->find_object_pairs(boxes).size(); },
-          [=] { return broad_phase->stats().object_pairs_tested; }};
+          [=] {
+            const BroadPhaseStats& stats = broad_phase->stats();
+            return options.method == BroadPhaseMethod::sweep3 ? stats.exchanges : stats.object_pairs_tested;
+          }};
 }
 Following of_library(BroadPhaseMethod method) {
   BroadPhaseOptions options;

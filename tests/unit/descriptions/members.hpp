@@ -79,8 +79,8 @@ inline auto members_of(StepStats& o) {
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, p, q, r, s, t, u, v, w, x, y, z, aa);
 }
 inline auto members_of(BroadPhaseStats& o) {
-  auto& [a, b, c, d, e, f, g, h] = o;
-  return std::tie(a, b, c, d, e, f, g, h);
+  auto& [a, b, c, d, e, f, g, h, i] = o;
+  return std::tie(a, b, c, d, e, f, g, h, i);
 }
 inline auto members_of(OctreeStatistics& o) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = o;
