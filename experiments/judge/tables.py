@@ -9,10 +9,14 @@ class MissingTable(LookupError):
 
 
 class Tables:
-    """The tables of some folders, by name. A number in a field is a number here, an empty field None."""
+    """The tables of some folders, by name; those of one name are one. A number in a field is a number here, an empty
+    field None."""
 
     def __init__(self, *folders):
-        self.paths = {path.stem: path for folder in folders for path in sorted(pathlib.Path(folder).glob("*.csv"))}
+        self.paths = {}
+        for folder in folders:
+            for path in sorted(pathlib.Path(folder).glob("*.csv")):
+                self.paths.setdefault(path.stem, []).append(path)
         self.read = {}
 
     def __contains__(self, name):
@@ -22,15 +26,17 @@ class Tables:
         if name not in self.paths:
             raise MissingTable(name)
         if name not in self.read:
-            lines = self.paths[name].read_text(encoding="utf-8", errors="replace").splitlines()
-            head = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
-            rows = [{column: value_of(text) for column, text in row.items()}
-                    for row in csv.DictReader(line for line in lines if not line.startswith("#"))]
+            head, rows = {}, []
+            for path in self.paths[name]:
+                lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+                head = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# ")) | head
+                rows += [{column: value_of(text) for column, text in row.items()}
+                         for row in csv.DictReader(line for line in lines if not line.startswith("#"))]
             self.read[name] = head, rows
         return self.read[name]
 
     def head(self, name):
-        """The comments: date, commit, processor, compiler, command, and the parameters of the experiment."""
+        """The comments of the first file: date, commit, processor, compiler, command, parameters of the experiment."""
         return self._load(name)[0]
 
     def rows(self, name, **wanted):
