@@ -1,6 +1,7 @@
 #include "plain/plain_broad_phase.hpp"
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace supple::experiments {
 namespace {
@@ -36,6 +37,56 @@ class Sweep final : public PlainBroadPhase {
     return pairs;
   }
   std::vector<Aabb> sorted_;
+};
+
+/// [Bar92]: lists of all ends on three axes that stay sorted from step to step.
+class ThreeLists final : public PlainBroadPhase {
+  struct End {
+    float value;
+    std::uint32_t box;
+    bool is_upper;
+    bool operator<(const End& other) const {
+      return value != other.value ? value < other.value : is_upper < other.is_upper;
+    }
+  };
+
+  std::size_t step(const std::vector<Aabb>& boxes) override {
+    tests_ = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<End>& ends = lists_[static_cast<std::size_t>(axis)];
+      if (ends.empty()) {  // all lower ends, then all upper ones: the first sort meets every pair
+        for (const bool is_upper : {true, false}) {
+          for (std::uint32_t i = 0; i < boxes.size(); ++i) ends.push_back({0, i, is_upper});
+        }
+      }
+      for (End& end : ends) end.value = (end.is_upper ? boxes[end.box].max : boxes[end.box].min)[axis];
+      sort_by_insertion(ends, boxes);
+    }
+    return pairs_.size();
+  }
+
+  void sort_by_insertion(std::vector<End>& ends, const std::vector<Aabb>& boxes) {
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+      const End moving = ends[i];
+      std::size_t to = i;
+      for (; to > 0 && moving < ends[to - 1]; --to) {
+        const End passed = ends[to - 1];
+        ends[to] = passed;
+        ++tests_;
+        if (moving.is_upper == passed.is_upper || moving.box == passed.box) continue;
+        const std::uint64_t pair =
+            std::uint64_t{std::min(moving.box, passed.box)} << 32 | std::max(moving.box, passed.box);
+        if (moving.is_upper)
+          pairs_.erase(pair);
+        else if (overlap(boxes[moving.box], boxes[passed.box]))
+          pairs_.insert(pair);
+      }
+      ends[to] = moving;
+    }
+  }
+
+  std::array<std::vector<End>, 3> lists_;
+  std::unordered_set<std::uint64_t> pairs_;
 };
 
 class Octree final : public PlainBroadPhase {
@@ -121,6 +172,9 @@ std::unique_ptr<PlainBroadPhase> plain_brute_force() {
 }
 std::unique_ptr<PlainBroadPhase> plain_sweep() {
   return std::make_unique<Sweep>();
+}
+std::unique_ptr<PlainBroadPhase> plain_three_lists() {
+  return std::make_unique<ThreeLists>();
 }
 std::unique_ptr<PlainBroadPhase> plain_octree(const Vec3d& corner, double edge, std::uint32_t level_allowed) {
   return std::make_unique<Octree>(corner, edge, level_allowed);

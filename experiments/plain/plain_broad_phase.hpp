@@ -27,6 +27,8 @@ class PlainBroadPhase {
 std::unique_ptr<PlainBroadPhase> plain_brute_force();
 /// Sorts along the x axis in each step.
 std::unique_ptr<PlainBroadPhase> plain_sweep();
+/// Keeps sorted lists on three axes from step to step, and pairs until their ends change places ([Bar92]).
+std::unique_ptr<PlainBroadPhase> plain_three_lists();
 /// The octree of Figure 2 over a cube: levels 0 and 1 always exist, and a region with two boxes or more
 /// expands down to `level_allowed`. A pair counts in the first region that both boxes are in.
 std::unique_ptr<PlainBroadPhase> plain_octree(const Vec3d& corner, double edge, std::uint32_t level_allowed);

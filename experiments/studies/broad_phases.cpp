@@ -64,6 +64,7 @@ constexpr std::array methods{
              return plain(
                  plain_octree(cube.corner, cube.edge, broad_phase_of_2007(field).scene_octree.max_level));
            }},
+    Method{"plain sweep3", true, [](const BoxField&) { return plain(plain_three_lists()); }},
     Method{"plain sweep", true, [](const BoxField&) { return plain(plain_sweep()); }},
     Method{"plain brute force", true, [](const BoxField&) { return plain(plain_brute_force()); }}};
 

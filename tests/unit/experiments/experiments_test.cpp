@@ -69,7 +69,7 @@ TEST(BroadPhases, AllMethodsFindTheSamePairsInEachRound) {
       EXPECT_EQ(count_of(row[5]), boxes * (boxes - 1) / 2);
     }
   }
-  EXPECT_EQ(rows.size(), 10u);
+  EXPECT_EQ(rows.size(), 11u);
   for (const auto& [method, count] : rows)
     EXPECT_EQ(count, 15u) << method << ": three sizes, two with few in motion";
 }
@@ -95,7 +95,7 @@ TEST(PlainBroadPhase, FindsWhatBruteForceFindsAlsoOutsideOfTheCube) {
   for (const std::size_t count : {1u, 2u, 9u, 300u}) {
     BoxField field(count, 5);
     const RootCube cube = field.cube();
-    const auto brute = plain_brute_force(), sweep = plain_sweep();
+    const auto brute = plain_brute_force(), sweep = plain_sweep(), lists = plain_three_lists();
     // A cube in the middle half of the field: many boxes lie outside of it or across its faces.
     const Vec3d corner{cube.edge / 4, cube.edge / 4, cube.edge / 4};
     std::vector<std::unique_ptr<PlainBroadPhase>> octrees;
@@ -104,6 +104,7 @@ TEST(PlainBroadPhase, FindsWhatBruteForceFindsAlsoOutsideOfTheCube) {
     for (int step = 0; step < 20; ++step) {
       const std::size_t pairs = brute->step(field.boxes());
       EXPECT_EQ(sweep->step(field.boxes()), pairs);
+      EXPECT_EQ(lists->step(field.boxes()), pairs);
       for (const auto& octree : octrees) EXPECT_EQ(octree->step(field.boxes()), pairs);
       field.move();
     }
@@ -113,6 +114,7 @@ TEST(PlainBroadPhase, FindsWhatBruteForceFindsAlsoOutsideOfTheCube) {
       {{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{0, 0, 0}, {1, 1, 1}}};
   EXPECT_EQ(plain_brute_force()->step(touching), 6u);
   EXPECT_EQ(plain_octree({0, 0, 0}, 2, 3)->step(touching), 6u);
+  EXPECT_EQ(plain_three_lists()->step(touching), 6u);
 }
 
 TEST(Scaling, HasEachQuantityAtEachSize) {
