@@ -13,6 +13,7 @@ from scipy import stats
 from judge.text import rounded
 
 LEVEL = 0.05
+SHORTEST = 1e-9  # seconds: a clock may say 0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -55,7 +56,7 @@ def mean_of(values):
 
 def ratio_of(a, b):
     """The geometric mean of a / b over rounds in which both were measured in turn."""
-    logarithms = np.log(np.asarray(a, float) / np.asarray(b, float))
+    logarithms = np.log(np.maximum(a, SHORTEST) / np.maximum(b, SHORTEST))
     of = mean_of(logarithms)
     return Estimate(math.exp(of.mean), of.error, of.freedom, of_logarithm=True)
 
@@ -76,14 +77,15 @@ def ratio_of_sums(a, b):
 
 def quotient(a, b):
     """The quotient of two independent means."""
+    if b.mean == 0:
+        return Estimate(math.nan, math.inf, 1)
     mean = a.mean / b.mean
-    parts = (a.error / a.mean, a.freedom), (b.error / b.mean, b.freedom)
+    parts = (a.error / b.mean, a.freedom), (mean * b.error / b.mean, b.freedom)
     variance = sum(part**2 for part, _ in parts)
     if variance == 0 or not math.isfinite(variance):
-        return Estimate(mean, abs(mean) * math.sqrt(variance), 1)
+        return Estimate(mean, math.sqrt(variance), 1)
     # Welch and Satterthwaite.
-    freedom = variance**2 / sum(part**4 / degrees for part, degrees in parts)
-    return Estimate(mean, abs(mean) * math.sqrt(variance), freedom)
+    return Estimate(mean, math.sqrt(variance), variance**2 / sum(part**4 / degrees for part, degrees in parts))
 
 
 def exponent_of(sizes, numbers):

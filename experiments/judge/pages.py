@@ -136,7 +136,7 @@ def point_plot(title, x_label, y_label, names, groups, logarithmic=False):
         axes.errorbar(x, [point[1] for point in points], errors, label=label, linestyle="", markersize=6,
                       marker=MARKERS[i % len(MARKERS)], color=COLORS[i % len(COLORS)])
     if logarithmic:
-        numbers = [point[1] for points in groups.values() for point in points if point[1] > 0]
+        numbers = [point[1] for points in groups.values() for point in points if point[1] > 0] or [1]
         set_logarithmic(axes.yaxis, min(numbers), max(numbers))
     else:
         axes.set_ylim(0, 1.1 * max(point[1] for points in groups.values() for point in points))

@@ -47,6 +47,9 @@ class Estimates(unittest.TestCase):
         mean = sum(without) / 3
         self.assertAlmostEqual(sums.error, math.sqrt(2 / 3 * sum((value - mean) ** 2 for value in without)))
         self.assertTrue(math.isnan(ratio_of_sums([1], [0]).mean))
+        self.assertTrue(math.isnan(quotient(mean_of([1, 2]), mean_of([0, 0])).mean))
+        self.assertAlmostEqual(quotient(Estimate(0, 0.6, 4), Estimate(3, 0.3, 4)).error, 0.2)
+        self.assertTrue(math.isfinite(ratio_of([0, 1e-6], [1e-6, 0]).mean), "a clock may say 0")
         self.assertAlmostEqual(quotient(Estimate(6, 0.6, 4), Estimate(3, 0.3, 4)).error, 2 * math.hypot(0.1, 0.1))
 
     def test_exponents(self):
