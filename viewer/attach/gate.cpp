@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "session/pins/pin_rows.hpp"
@@ -17,6 +18,9 @@ constexpr std::ptrdiff_t most_rows = 4096;
 /// the session and of the network take cores and caches from the program, about as much as it waits where it
 /// uses all cores (benchmarks/attached.cpp).
 constexpr double waiting_part = 0.5;
+/// A page that waits for a frame gets one after so many seconds, whatever the budget says: short steps on a
+/// busy machine can cost more than their share without any frame, and the page would stay empty.
+constexpr double longest_wait = 2;
 /// How often a pause looks for a requested stop. A signal handler may request it, so no callback can.
 constexpr auto between_looks = 50ms;
 
@@ -46,7 +50,10 @@ void Gate::pass(const Scene& scene, const DetectRequest& request) {
     state_.reason = std::move(found);
     steps_ = 0;
   }
-  if (!is_halted() && is_requested_ && budget_.affords(begin)) show(lock);
+  if (!is_halted() && is_requested_ && (budget_.affords(begin) || begin - shown_at_ > longest_wait)) {
+    shown_at_ = begin;
+    show(lock);
+  }
   const double end = surroundings_.seconds();
   budget_.spend(begin, end);
   seconds_in_steps_ += end - begin;
@@ -162,6 +169,7 @@ void Gate::set_page(bool is_connected) {
   const std::lock_guard lock(mutex_);
   has_page_ = is_connected;
   is_requested_ = false;
+  shown_at_ = -std::numeric_limits<double>::infinity();
   if (!is_connected && !waits_for_page_ && !is_at_end_) {
     state_.runs = true;
     steps_ = 0;

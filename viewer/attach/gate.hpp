@@ -87,6 +87,7 @@ class Gate final : public Program {
   std::vector<StepRow> rows_;  // that the session has not taken
   std::vector<PinRow> pin_rows_;
   double passed_at_ = 0;
+  double shown_at_ = 0;      // the last step that waited for a frame, or before all when a page came
   std::uint64_t steps_ = 0;  // to take before the pause
   std::uint64_t frame_count_ = 0;
   double seconds_in_steps_ = 0;

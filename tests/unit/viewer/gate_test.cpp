@@ -111,6 +111,24 @@ TEST_F(WatchedProgram, BudgetLimitsFramesAndStatisticsHaveAllSteps) {
   EXPECT_EQ(rows, 6u) << "of steps without a frame, too";
 }
 
+TEST_F(WatchedProgram, APageThatWaitsGetsAFrameWhateverTheBudgetSays) {
+  attach({.max_slowdown = 0});
+  seconds_of_frame_ = 0.5;
+  turn();
+  give_credit();
+  turn();
+  for (std::size_t count = 1; count <= 3; ++count) {
+    run(1);
+    ASSERT_TRUE(until([&] { return frames_.size() == count && !is_running_; })) << count;
+    give_credit();
+    turn();
+    run(3);  // less than two seconds later: nothing is affordable
+    ASSERT_TRUE(eventually([&] { return !is_running_; }));
+    EXPECT_EQ(frames_.size(), count);
+    seconds_ = 3.0 * static_cast<double>(count);
+  }
+}
+
 TEST_F(WatchedProgram, QuestionsAreAnsweredFromTheSceneInAPause) {
   attach();
   turn();

@@ -30,7 +30,9 @@ class WatchedProgram : public testing::Test {
 
   void attach(AttachOptions options = {}) {
     gate_ = std::make_shared<Gate>(
-        options, Gate::Surroundings{[this] { return seconds_.load(); }, [] {}, std::chrono::hours(1)});
+        options,
+        Gate::Surroundings{[this] { return seconds_.load(); },
+                           [this] { seconds_ = seconds_ + seconds_of_frame_; }, std::chrono::hours(1)});
     scene_.set_observer([gate = gate_](const Scene& scene, const DetectRequest& request) {
       gate->pass(scene, request);
       EXPECT_FALSE(gate->enter()) << "the scene is closed outside of the gate";
@@ -74,6 +76,7 @@ class WatchedProgram : public testing::Test {
   ObjectId left_ = scene_.add(test_ball("left", {}).mesh, {.name = "left"});
   ObjectId right_ = scene_.add(test_ball("right", {3, 0, 0}).mesh, {.name = "right"});
   std::atomic<double> seconds_ = 0;
+  double seconds_of_frame_ = 0;  ///< that the clock moves when the program waits
   std::shared_ptr<Gate> gate_;
   std::optional<TestPage> page_;
   std::vector<ViewerMessage> scenes_, frames_, answers_, failures_;

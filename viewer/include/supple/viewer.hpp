@@ -39,8 +39,8 @@ struct AttachOptions {
   /// same port. Made when it does not exist.
   std::string token_file{};
   bool open_browser = true;  ///< opens the page in the user's browser, if there is a screen
-  /// The share of the program's time that frames may take, at least 0. The page then gets fewer frames. A
-  /// pause does not count.
+  /// The share of the program's time that frames may take, at least 0. The page then gets fewer frames, but
+  /// one that waits gets one every two seconds. A pause does not count.
   double max_slowdown = 0.03;
   double time_step = 0;  ///< seconds between two steps, for the time that the page shows; 0: no time
   /// The first step and each break wait until a page is connected. Without this option, nothing waits while
