@@ -70,6 +70,11 @@ def generate(api):
 PLACES = {"include", "libs", "simulation", "viewer"}  # of the descriptions
 
 
+def words_of_sets(members):
+    """The words of all sets of some members, of which the first is the word of the empty set."""
+    return [",".join(word for bit, word in enumerate(members[1:]) if mask >> bit & 1) or members[0] for mask in range(2 ** (len(members) - 1))]
+
+
 class Described:
     """The descriptions of the headers: of options, records and statistics."""
 
@@ -80,8 +85,9 @@ class Described:
                         for entity in header["entities"] if entity["kind"] == "struct"}
         self.enums = {entity["name"]: entity for header in api["headers"] for entity in header["entities"]
                       if entity["kind"] == "enum"}
-        self.words = {name.split("::", 1)[-1] if name.startswith("viewer::") else name: re.findall(r'"([^"]+)"', words)
-                      for name, words in re.findall(r"constexpr std::array (?:set_)?words<([\w:]+)>\{(.*?)\}", text, re.DOTALL)}
+        self.words = {name.removeprefix("viewer::"): words_of_sets(words) if is_set else words
+                      for is_set, name, words in ((is_set, name, re.findall(r'"([^"]+)"', words)) for is_set, name, words in
+                                                  re.findall(r"constexpr std::array (set_)?words<([\w:]+)>\{(.*?)\}", text, re.DOTALL))}
         self.blocks = dict(re.findall(r"\nstruct Description<(?:viewer::)?([\w:]+)> ([:{].*?)\n\};", text, re.DOTALL))
 
     def members(self, struct):

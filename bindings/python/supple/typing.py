@@ -1269,7 +1269,7 @@ class UntestedKind(Record):
     'A kind of contacts for which there was nothing to test.'
 
     __slots__ = ()
-    kind: Literal['none', 'intersection', 'continuous', 'proximity', 'penetration']
+    kind: Literal['none', 'intersection', 'continuous', 'intersection,continuous', 'proximity', 'intersection,proximity', 'continuous,proximity', 'intersection,continuous,proximity', 'penetration', 'intersection,penetration', 'continuous,penetration', 'intersection,continuous,penetration', 'proximity,penetration', 'intersection,proximity,penetration', 'continuous,proximity,penetration', 'intersection,continuous,proximity,penetration']
     'Kind of contacts'
     reason: Literal['no_objects', 'no_elements', 'not_finite', 'no_solid', 'no_motion', 'no_margin', 'one_object', 'all_static', 'groups', 'filter']
     'Why there was nothing to test'
