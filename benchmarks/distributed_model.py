@@ -23,8 +23,10 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path += [str(ROOT / "tools"), str(ROOT / "experiments")]
-from make_paper import jinja2, read, wrapped  # noqa: E402
-from report import COLORS, new_plot, rounded, set_logarithmic, try_debians_python  # noqa: E402
+from make_paper import jinja2, wrapped  # noqa: E402
+from judge.pages import COLORS, new_plot, set_logarithmic, try_debians_python  # noqa: E402
+from judge.tables import Tables  # noqa: E402
+from judge.text import rounded  # noqa: E402
 
 RESULTS = ROOT / "benchmarks/results/distributed/ranks.csv"
 STRONG = [(ranks, workload) for workload in ("tiles:1414", "sheet:1414", "balls:512:20") for ranks in (1, 2, 4, 8, 16, 32, 64)]
@@ -63,10 +65,6 @@ def measure(program):
         table.writeheader()
         table.writerows(rows)
 
-
-
-def numbers(row):
-    return row | {key: float(value) for key, value in row.items() if key != "workload"}
 
 
 class Scene:
@@ -182,7 +180,7 @@ class Scene:
 
 
 def scenes():
-    rows = [numbers(row) for row in read(RESULTS)[1]]
+    rows = Tables(RESULTS.parent).rows(RESULTS.stem)
     return (Scene(rows, "one mesh in tiles", "tiles:1414", 2, True), Scene(rows, "balls dealt in turn", "balls:512:20", 3, False),
             Scene(rows, "one mesh in strips", "sheet:1414", 2, False))
 
@@ -256,7 +254,7 @@ def cells(row):
 
 def page():
     """The page, from its template."""
-    head, _ = read(RESULTS)
+    head = Tables(RESULTS.parent).head(RESULTS.stem)
     dask = re.search(r"scheduler alone.*?\| ([\d,]+) \|", (ROOT / "docs/distributed.md").read_text(encoding="utf-8"))
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(ROOT / "benchmarks/templates"), undefined=jinja2.StrictUndefined,
                                      keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True)
