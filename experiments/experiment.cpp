@@ -42,8 +42,7 @@ Table1Options table1_options(const ExperimentOptions& options) {
   return table1;
 }
 
-/// An experiment without runs that can be resumed. Options that differ only by `quick` have a seed of their
-/// own.
+/// Runs an experiment that cannot be resumed.
 Results run(const ExperimentOptions& given, const std::filesystem::path& folder) {
   const bool shown = !given.quiet;
   const auto with_seed = [&](auto options) {

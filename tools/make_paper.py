@@ -10,7 +10,8 @@ functions:
 
   verdict(NAME)           the verdict on a claim, with its numbers when these are few
   word(NAME)              only the verdict
-  number(NAME, CASE)      the number of a claim in a case and its interval
+  number(NAME, CASE, HOLDS)  the number of a claim in a case and its interval; fails if HOLDS is given and the tables
+                          do not decide so
   listing(TABLE)          a table of judge/report.py: rates, ratios, averages, strains or changes
   head(TABLE, KEY)        from the comments of TABLE.csv: commit, processor, command
   claims_table()          all claims of the paper in its order, then our own
@@ -57,13 +58,15 @@ class Results:
     def word(self, name):
         return f"**{self.claims[name].verdict}**" if name in self.claims else "**Not measured**"
 
-    def number(self, name, case=""):
+    def number(self, name, case="", holds=None):
         found = [test for test in self.claims[name].tests if test.when == case]
         if not found:
             raise KeyError(f"{name} has no case {case!r}, but {[test.when for test in self.claims[name].tests]}")
+        if holds is not None and any(test.outcome() != holds for test in found):
+            raise ValueError(f"the template says that {name} {'holds' if holds else 'does not hold'} in the case {case!r}; the tables do not")
         number, level = found[0].number, found[0].level
         low, high = number.interval(level)
-        interval = f" ({rounded(low, 2)} to {rounded(high, 2)})" if number.error else ""
+        interval = f" ({rounded(low)} to {rounded(high)})" if number.error else ""
         return f"{rounded(number.mean)}{interval}"
 
     def listing(self, name):

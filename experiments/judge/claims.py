@@ -160,7 +160,6 @@ def _(tables):
 # --- claims ---
 
 
-
 @claim("test-cost", "5.2, 4", "A test of two spheres costs more than one of two boxes.", "time of a test of boxes / of spheres",
        remark="The paper counts 11 operations for spheres and 15 for boxes; six comparisons are enough for boxes.")
 def _(tables):

@@ -14,7 +14,7 @@ namespace supple::experiments {
 /// along each axis, and the sides of their cube reflect them. The boxes are the same on every machine.
 class BoxField {
  public:
-  /// Of each `stride` boxes, one moves.
+  /// One of each `stride` boxes moves.
   BoxField(std::size_t count, std::uint64_t seed, std::size_t stride = 1);
 
   const std::vector<Aabb>& boxes() const { return boxes_; }

@@ -120,7 +120,7 @@ void ThreeAxisSweep::update_box_pairs() {
   box_pairs_.swap(merged_);
 }
 
-/// Of the pairs whose boxes overlap, those of wanted kinds and, with spheres, those whose spheres overlap.
+/// Lists the pairs of wanted kinds whose boxes overlap and, with spheres, whose spheres overlap.
 void ThreeAxisSweep::report(const VolumeStore& volumes, FoundPairs& found) const {
   const std::span<const BoundingSphere> spheres = volumes.spheres();
   found.pairs.clear();
