@@ -2,22 +2,44 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
-#include <string>
-#include <utility>
 
 #include "base/interruption.hpp"
 #include "base/run_program.hpp"
 #include "program_2007/program_2007.hpp"
 #include "results.hpp"
 #include "studies/studies.hpp"
+#include "supple/error.hpp"
 #include "supple/utf8.hpp"
-#include "table1/table1.hpp"
+#include "table1/table1_runs.hpp"
 
 namespace supple::experiments {
 namespace {
 
-using Kind = ExperimentOptions::Kind;
+struct Experiment {
+  const char* name;
+  Results (*run)(const Request& request);  ///< none: its runs are in a log
+  const char* help;
+};
+
+constexpr std::array all_experiments{
+    Experiment{"table1", nullptr,
+               "The paper's Table 1: collisions of 3, 6, 9 and more objects, with boxes and with spheres."},
+    Experiment{"scaling", run_scaling,
+               "Time against the number of objects, up to 1,000,000, and of vertices."},
+    Experiment{"arity", run_arity, "Trees of two, four and eight children."},
+    Experiment{"volumes", run_volumes,
+               "Boxes, spheres, oriented boxes and k-DOPs, and ways to build an octree."},
+    Experiment{"claims", run_claims, "Single claims: the cost of one test, the depth of octrees, stability."},
+    Experiment{"ablation", run_ablation,
+               "From the program of 2007 to the defaults of today, one choice at a time."},
+    Experiment{"trials", run_trials, "The methods that the paper tried and rejected."},
+    Experiment{"sensitivity", nullptr,
+               "Whether other scenes, speeds or levels give the numbers of the paper. Takes hours."},
+    Experiment{"figures", run_figures,
+               "The paper's figures: modules, regions, spheres, pairs of nodes and their boxes."}};
 
 Table1Options table1_options(const ExperimentOptions& options) {
   Table1Options table1 = default_table1_options(options.quick);
@@ -42,58 +64,39 @@ Table1Options table1_options(const ExperimentOptions& options) {
   return table1;
 }
 
-/// Runs an experiment that cannot be resumed.
-Results run(const ExperimentOptions& given, const std::filesystem::path& folder) {
-  const bool shown = !given.quiet;
-  const auto with_seed = [&](auto options) {
-    options.seed = given.seed;
-    return options;
-  };
-  switch (given.kind) {
-    case Kind::scaling:
-      return run_scaling(scaling_options(given.quick, given.seed), shown);
-    case Kind::volumes:
-      return run_volumes(with_seed(volumes_options(given.quick)), shown);
-    case Kind::claims:
-      return run_claims(with_seed(claims_options(given.quick)), shown);
-    case Kind::ablation:
-      return run_ablation(with_seed(ablation_options(given.quick)), shown);
-    case Kind::trials:
-      return run_trials(with_seed(trial_options(given.quick)), shown);
-    case Kind::figures:
-      return run_figures(with_seed(figures_options(given.quick)), folder, shown);
-    default:
-      return run_arity(with_seed(arity_options(given.quick)), shown);
-  }
-}
-
 }  // namespace
 
-const std::string& name_of(Kind kind) {
-  return experiment_names[static_cast<std::size_t>(kind)];
+std::vector<std::pair<std::string, std::string>> experiments() {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const Experiment& experiment : all_experiments) names.emplace_back(experiment.name, experiment.help);
+  return names;
 }
 
 int run_experiment(const ExperimentOptions& options) {
-  const std::filesystem::path folder =
-      options.output.empty() ? "experiment_" + name_of(options.kind) : options.output;
-  if (options.kind == Kind::table1 || options.kind == Kind::sensitivity) {
+  const Request request{options.quick, options.seed,
+                        options.output.empty() ? "experiment_" + options.name : options.output,
+                        !options.quiet};
+  if (options.has_log()) {
+    if (options.resume && !std::filesystem::exists(request.folder))
+      throw Error(fmt::format("--resume: {} has no experiment; leave out --resume to start one",
+                              request.folder.string()));
     const cli::Interruption interruption;
-    const Table1Options table1 = table1_options(options);
-    const bool is_complete =
-        options.kind == Kind::table1
-            ? run_table1(table1, folder, options.resume, interruption, !options.quiet)
-            : run_sensitivity(table1, options.quick, folder, options.resume, interruption, !options.quiet);
-    if (!is_complete) {
+    const auto run = options.name == "table1" ? run_table1 : run_sensitivity;
+    if (!run(table1_options(options), request, options.resume, interruption)) {
       fmt::print(
           stderr,
           "supple: interrupted; {} has the complete runs, and the same command with --resume goes on\n",
-          one_line(folder.string()));
+          one_line(request.folder.string()));
       return cli::exit_interrupted + interruption.signal();
     }
   } else {
-    write_results(run(options, folder), folder);
+    const auto* const experiment = std::find_if(all_experiments.begin(), all_experiments.end(),
+                                                [&](const Experiment& e) { return e.name == options.name; });
+    Results results = experiment->run(request);
+    results.parameters.emplace_back("seed", fmt::format("{}", options.seed));
+    write_results(results, request.folder);
   }
-  return judge(folder, options.quiet);
+  return judge(request.folder, options.quiet);
 }
 
 }  // namespace supple::experiments

@@ -1,22 +1,22 @@
 #pragma once
 
-#include <array>
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "options/option_kinds.hpp"
 #include "table1/table1_options.hpp"
 
 namespace supple::experiments {
 
 /// Options of `supple experiment`.
 struct ExperimentOptions {
-  enum class Kind { table1, scaling, arity, volumes, claims, ablation, trials, sensitivity, figures };
-  Kind kind = Kind::table1;
+  std::string name;  ///< of the experiment
   bool quick = false;
   bool quiet = false;
-  std::string output;                      ///< folder; empty: experiment_ and the kind
+  std::string output;                      ///< folder; empty: experiment_ and the name
   std::optional<std::uint32_t> threads{};  ///< parallel runs of table1 and sensitivity; none: one per core
   std::uint64_t seed = 1;
   // For table1; without a value, --quick decides.
@@ -28,12 +28,16 @@ struct ExperimentOptions {
   std::optional<std::uint32_t> simulated_seconds{};  ///< 0: no runs in simulated time
   std::optional<std::uint32_t> program_clock{};      ///< of detection and motion per run; none: no such runs
   bool resume = false;
+
+  /// Whether its runs are in a log, so that it can be resumed.
+  bool has_log() const { return name == "table1" || name == "sensitivity"; }
 };
 
-/// In the order of `Kind`.
-inline const std::array<std::string, 9> experiment_names{
-    "table1", "scaling", "arity", "volumes", "claims", "ablation", "trials", "sensitivity", "figures"};
-const std::string& name_of(ExperimentOptions::Kind kind);
+/// The names of the experiments, and what each does, for the help.
+std::vector<std::pair<std::string, std::string>> experiments();
+
+/// Adds the options and the footer of the help to the command `experiment`.
+void add_options(CLI::App& experiment, ExperimentOptions& options, cli::Dependences& dependences);
 
 /// Runs an experiment, writes its files and prints the verdicts on the claims. Returns the exit status of the
 /// program.

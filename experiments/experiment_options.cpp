@@ -1,4 +1,4 @@
-#include "experiment_options.hpp"
+#include "experiment.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -15,51 +15,37 @@
 namespace supple::experiments {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+std::string footer() {
+  std::string text = "Experiments:\n";
+  for (const auto& [name, help] : experiments()) text += fmt::format("  {}\n      {}\n", name, help);
+  return text + R"(
+Examples:
   supple experiment table1 --quick
-      A small version of the paper's Table 1: collisions of 3, 6 and 9 objects, with boxes and with spheres.
+      A small version, in under a minute.
   supple experiment table1 --output table1
-      Five runs of ten simulated minutes for each configuration. Writes CSV files and table1/table1.html.
+      Five runs of ten simulated minutes for each scene. Writes CSV files and table1/table1.html.
   supple experiment table1 --objects 3,6,9 --seconds 0 --program-clock 600 --output clock
       Counts the collisions found in ten minutes of the whole program, as the paper does. Takes hours. Ctrl-C
       stops it; the same command with --resume goes on.
-  supple experiment table1 --objects 12,20,30 --bounding-volume sphere --sphere-fit box
-      More objects, and the spheres of the paper's eq. 3 and 4.
-  supple experiment table1 --scene scenes/nine.toml --scene-size 3,4
-      Your own scene in two sizes.
-  supple experiment scaling
-      Measures time against the number of objects, up to 1,000,000, and of vertices, and fits exponents.
-  supple experiment arity
-      Compares trees of two, four and eight children.
-  supple experiment volumes
-      Compares boxes, spheres, oriented boxes and k-DOPs, and ways to build an octree.
-  supple experiment claims
-      Measures single claims of the paper: the cost of one test, the depth of octrees, stability.
-  supple experiment ablation
-      From the program of 2007 to the defaults of today, one choice at a time.
-  supple experiment trials
-      The methods that the paper tried and rejected.
-  supple experiment sensitivity
-      Whether other scenes, speeds or levels give the numbers of the paper. Takes an hour.
-  supple experiment figures
-      The data of the paper's figures: modules, regions, spheres, pairs of nodes and their boxes.
+  supple experiment table1 --scene scenes/nine.toml --scene-size 3,4 --bounding-volume sphere --sphere-fit box
+      Your own scene in two sizes, with the spheres of the paper's eq. 3 and 4.
 
 Each experiment writes CSV tables and a report as one HTML page into a folder, and reports which of the
 paper's claims hold. The report needs python3 with matplotlib and scipy. Without them, the tables are written
 and the exit status is 2. experiments/README.md describes the experiments.)";
+}
 
-void add_kind(CLI::App& app, ExperimentOptions& options) {
-  const auto parse = [&options](const std::string& given) {
-    const auto found = std::find(experiment_names.begin(), experiment_names.end(), given);
-    if (found == experiment_names.end())
-      throw CLI::ValidationError(
-          "experiment", fmt::format("there is no experiment '{}'; choose {} or {}", given,
-                                    fmt::join(experiment_names.begin(), experiment_names.end() - 1, ", "),
-                                    experiment_names.back()));
-    options.kind = static_cast<ExperimentOptions::Kind>(found - experiment_names.begin());
+void add_name(CLI::App& app, ExperimentOptions& options) {
+  std::vector<std::string> names;
+  for (const auto& [name, help] : experiments()) names.push_back(name);
+  const auto parse = [&options, names](const std::string& given) {
+    if (std::find(names.begin(), names.end(), given) == names.end())
+      throw CLI::ValidationError("experiment",
+                                 fmt::format("there is no experiment '{}'; choose {} or {}", given,
+                                             fmt::join(names.begin(), names.end() - 1, ", "), names.back()));
+    options.name = given;
   };
-  app.add_option_function<std::string>(fmt::format("{}", fmt::join(experiment_names, "|")), parse,
-                                       "The experiment")
+  app.add_option_function<std::string>(fmt::format("{}", fmt::join(names, "|")), parse, "The experiment")
       ->required()
       ->type_name("");
 }
@@ -101,7 +87,7 @@ std::vector<CLI::Option*> add_table1_lists(CLI::App& app, ExperimentOptions& opt
 }
 
 void add_table1(CLI::App& app, ExperimentOptions& options, cli::Dependences& dependences) {
-  const auto is_table1 = [&options] { return options.kind == ExperimentOptions::Kind::table1; };
+  const auto is_table1 = [&options] { return options.name == "table1"; };
   const auto table1_only = [&](CLI::Option* option) {
     option->description("table1: " + option->get_description());
     dependences.push_back({option, is_table1, "table1"});
@@ -160,20 +146,15 @@ void add_table1(CLI::App& app, ExperimentOptions& options, cli::Dependences& dep
                       "Parallel runs in simulated time, of one thread each (default and 0: one per core)");
   for (CLI::Option* const option : {resume, threads}) {
     option->description("table1 and sensitivity: " + option->get_description());
-    dependences.push_back({option,
-                           [&options] {
-                             return options.kind == ExperimentOptions::Kind::table1 ||
-                                    options.kind == ExperimentOptions::Kind::sensitivity;
-                           },
-                           "table1 or sensitivity"});
+    dependences.push_back({option, [&options] { return options.has_log(); }, "table1 or sensitivity"});
   }
 }
 
 }  // namespace
 
 void add_options(CLI::App& app, ExperimentOptions& options, cli::Dependences& dependences) {
-  app.footer(footer);
-  add_kind(app, options);
+  app.footer(footer());
+  add_name(app, options);
   app.add_flag("--quick", options.quick, "Run a small version, in under a minute");
   app.add_option("--output", options.output, "Folder for the results (default: experiment_NAME)")
       ->type_name("DIR");

@@ -3,7 +3,6 @@
 
 #include "base/run_program.hpp"
 #include "experiment.hpp"
-#include "experiment_options.hpp"
 #include "options/options.hpp"
 
 int main(int argument_count, char** argument_values) {

@@ -1,21 +1,53 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
-
-#include "table.hpp"
 
 namespace supple::experiments {
 
-/// What one experiment measured. It judges nothing: the script `supple-experiment-report` does, from the
+/// The value of a cell: nothing, a word, a count or a measured number.
+using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
+
+/// What an experiment measured, one row for each run or round.
+struct Table {
+  std::string name;                  ///< of the CSV file, without its ending
+  std::vector<std::string> columns;  ///< lower_case, with the unit
+  std::vector<std::vector<Cell>> rows{};
+
+  /// Throws `Error` unless there is a cell for each column.
+  void add(std::vector<Cell> row);
+};
+
+/// CSV as in RFC 4180, with line feeds, and quotes around texts with #, which begins a comment. Measured
+/// numbers have enough digits to read back the same number; one that is not a number is an empty field.
+std::string csv_of(const Table& table);
+/// One line of CSV with its line feed.
+std::string csv_of(const std::vector<Cell>& row);
+
+/// What an experiment is asked for.
+struct Request {
+  bool quick = false;  ///< a small version, in under a minute
+  std::uint64_t seed = 1;
+  std::filesystem::path folder{};  ///< for files that are no tables
+  bool show_progress = false;
+};
+
+/// What an experiment measured. It judges nothing: the script `supple-experiment-report` does, from the
 /// files.
 struct Results {
-  std::string name;
-  std::vector<std::pair<std::string, std::string>> parameters{};  ///< also in the head of each file
   std::vector<Table> tables{};
+  std::vector<std::pair<std::string, std::string>> parameters{};  ///< in the head of each file
 };
+
+/// The commit of the sources, `-dirty` after it if files differ from it; `unknown` without git.
+const char* commit();
+/// The things on which results depend, as comments at the start of a CSV file: date, commit, processor,
+/// compiler, command without what changes no number.
+std::string csv_head();
 
 /// Creates a folder if necessary. Throws `Error` when that fails.
 void make_folder(const std::filesystem::path& folder);

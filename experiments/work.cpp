@@ -1,9 +1,9 @@
 #include "work.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <ctime>
-#include <exception>
-#include <mutex>
+#include <future>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -35,39 +35,28 @@ TimedDetection::TimedDetection(Scene& scene) {
 
 void in_parallel(std::size_t count, std::optional<std::uint32_t> threads,
                  const std::function<bool(std::size_t)>& task) {
-  std::mutex mutex;
-  std::size_t next = 0;
-  std::exception_ptr fault;
+  std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (;;) {
-      std::size_t taken = 0;
-      {
-        const std::lock_guard lock(mutex);
-        if (next >= count) return;
-        taken = next++;
+    try {
+      for (std::size_t index = next++; index < count; index = next++) {
+        if (!task(index)) next = count;
       }
-      try {
-        if (task(taken)) continue;
-        const std::lock_guard lock(mutex);
-        next = count;
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        fault = std::current_exception();
-        next = count;
-      }
+    } catch (...) {
+      next = count;
+      throw;
     }
   };
   const unsigned given = threads.value_or(0);
   const unsigned wanted = given > 0 ? given : std::max(std::thread::hardware_concurrency(), 1u);
-  std::vector<std::thread> others;
+  std::vector<std::future<void>> others;
   try {
-    while (others.size() + 1 < std::min<std::size_t>(wanted, count)) others.emplace_back(work);
+    while (others.size() + 1 < std::min<std::size_t>(wanted, count))
+      others.push_back(std::async(std::launch::async, work));
   } catch (const std::system_error&) {
     cli::warn_of_missing_threads(wanted, static_cast<unsigned>(others.size()) + 1);
   }
   work();
-  for (std::thread& thread : others) thread.join();
-  if (fault) std::rethrow_exception(fault);
+  for (std::future<void>& other : others) other.get();
 }
 
 }  // namespace supple::experiments

@@ -5,7 +5,7 @@ if(NOT commit)
   set(commit unknown)
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-#include "machine.hpp"
+#include "results.hpp"
 
 const char* supple::experiments::commit() {
   return "@commit@";

@@ -192,14 +192,14 @@ def descent_plots(tables):
 
 def table1_plots(tables):
     """The ratio by each clock and in the paper, and the collisions in ten minutes of each clock."""
-    names = table1.scenes(tables)
+    names = table1.scenes(tables, table1.PROGRAM)
     for phase in paper.PHASES:
         groups = {}
         for clock in CLOCKS:
             ratios = [(place, table1.ratio(tables, scene, phase, clock)) for place, scene in enumerate(names)]
             groups[clock] = [(place, *with_error(ratio)) for place, ratio in ratios if math.isfinite(ratio.mean)]
-        groups["the paper"] = [(place, *with_error(table1.paper_ratio(int(scene.removeprefix("table1_")), phase))) for place, scene in enumerate(names)
-                               if scene in ("table1_3", "table1_6", "table1_9")]
+        groups["the paper"] = [(place, *with_error(table1.paper_ratio(table1.objects_of(scene), phase))) for place, scene in enumerate(names)
+                               if table1.objects_of(scene) in (3, 6, 9)]
         yield point_plot(f"Spheres for each box, {phase} phase", "scene", "ratio of collisions", [verdicts.scene_in_words(name) for name in names],
                          {name: points for name, points in groups.items() if points}, True)
 
@@ -215,14 +215,14 @@ PLOTS = {"table1": (table1_plots,), "scaling": (broad_phase_plots, vertices_plot
 def rates(tables):
     """Collisions in ten minutes by each clock, and those of the paper."""
     rows = []
-    for scene in table1.scenes(tables):
-        for volume in dict.fromkeys(row["volume"] for row in table1.runs(tables, scene=scene)):
+    for scene in table1.scenes(tables, table1.PROGRAM):
+        for volume in dict.fromkeys(row["volume"] for row in table1.runs(tables, table1.PROGRAM, scene=scene)):
             for phase in paper.PHASES:
                 numbers = []
                 for clock in CLOCKS:
                     of_clock = table1.runs(tables, clock, scene=scene, volume=volume)
                     numbers.append(rounded(float(np.mean([table1.collisions(row, phase, clock) for row in of_clock]))) if of_clock else "–")
-                objects = int(scene.removeprefix("table1_")) if scene in ("table1_3", "table1_6", "table1_9") else None
+                objects = table1.objects_of(scene)
                 theirs = rounded(float(np.mean(paper.runs(objects, volume, phase)))) if (objects, volume) in paper.TABLE1 else "–"
                 rows.append([verdicts.scene_in_words(scene), volume, phase, *numbers, theirs])
     return (["Scene", "Volume", "Phase", *(clock.capitalize() for clock in CLOCKS), "The paper"], rows, (0, 1, 2),
@@ -232,9 +232,9 @@ def rates(tables):
 def ratios(tables):
     """Spheres for each box by each clock, with intervals, and in the paper."""
     rows = []
-    for scene in table1.scenes(tables):
+    for scene in table1.scenes(tables, table1.PROGRAM):
         for phase in paper.PHASES:
-            of_paper = text_of(table1.paper_ratio(int(scene.removeprefix("table1_")), phase)) if scene in ("table1_3", "table1_6", "table1_9") else "–"
+            of_paper = text_of(table1.paper_ratio(table1.objects_of(scene), phase)) if table1.objects_of(scene) in (3, 6, 9) else "–"
             rows.append([verdicts.scene_in_words(scene), phase, *(text_of(table1.ratio(tables, scene, phase, clock)) for clock in CLOCKS), of_paper])
     return ["Scene", "Phase", *(clock.capitalize() for clock in CLOCKS), "The paper"], rows, (0, 1), "Collisions with spheres for each with boxes"
 
@@ -353,7 +353,7 @@ def name_of(folder):
 
 def html_of(tables, name, found):
     shown = [each for each in tables.paths if not each.endswith("_claims") and (name != "figures" or each in ("figures_1", "figures_2", "figures_4"))]
-    head = tables.head(next(each for each in shown if each != "table1_options"))
+    head = tables.head(shown[0])
     parts = ["<h2>What holds</h2>", f"<p>Numbers with their {100 - 100 * LEVEL:.0f} % intervals. Where many are judged together, their intervals are wider "
              "(Holm). A verdict is undecided when the interval has the limit in it.</p>"] if found else []
     parts += [html_of_claim(claim) for claim in found]

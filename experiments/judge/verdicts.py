@@ -78,8 +78,6 @@ def judged(tables):
 
 
 def scene_in_words(name):
-    if name in SCENES:
-        return SCENES[name]
-    return f"{name.removeprefix('table1_')} objects" if name.startswith("table1_") else name
+    return SCENES.get(name) or re.sub(r"^table1_(\d+)$", r"\1 objects", name)
 
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/files.hpp"
-#include "machine.hpp"
 #include "supple/error.hpp"
 #include "supple/inspection.hpp"
 #include "table1/table1_runs.hpp"
@@ -153,24 +152,20 @@ void write_meshes(const fs::path& path, const std::vector<cli::InputObject>& obj
 
 }  // namespace
 
-FiguresOptions figures_options(bool quick) {
-  FiguresOptions options;
-  if (quick) options.frames = 10;
-  return options;
-}
-
-Results run_figures(const FiguresOptions& options, const fs::path& folder, bool show_progress) {
+Results run_figures(const Request& request) {
+  const int frames = request.quick ? 10 : 60;  // one per step, around the collision of figures 3 to 5
+  const fs::path& folder = request.folder;
   make_folder(folder);
-  Work work(3, show_progress);
-  const Collision collision = find_collision(options.seed);
+  Work work(3, request.show_progress);
+  const Collision collision = find_collision(request.seed);
   work.done(1, "a collision");
 
   Modules modules;
   std::optional<Simulation> with_boxes;
   modules.precomputation =
-      seconds_of([&] { with_boxes.emplace(simulation_of(BoundingVolume::aabb, options.seed)); });
-  Simulation with_spheres = simulation_of(BoundingVolume::sphere, options.seed);
-  const auto half = static_cast<std::uint64_t>(options.frames) / 2;
+      seconds_of([&] { with_boxes.emplace(simulation_of(BoundingVolume::aabb, request.seed)); });
+  Simulation with_spheres = simulation_of(BoundingVolume::sphere, request.seed);
+  const auto half = static_cast<std::uint64_t>(frames) / 2;
   const std::uint64_t first = collision.step > half ? collision.step - half : 0;
   Table snapshot{"figures_2", region_columns}, regions{"figures_regions", region_columns};
   regions.columns.insert(regions.columns.begin(), "frame");
@@ -178,7 +173,7 @@ Results run_figures(const FiguresOptions& options, const fs::path& folder, bool 
       boxes{"figures_boxes", {"frame", "object", "level", "x0", "y0", "z0", "x1", "y1", "z1"}};
   std::optional<Table> descent;
   std::string positions;
-  for (std::uint64_t step = 1; step < first + static_cast<std::uint64_t>(options.frames); ++step) {
+  for (std::uint64_t step = 1; step < first + static_cast<std::uint64_t>(frames); ++step) {
     modules.step(*with_boxes);
     with_spheres.step();
     if (step < first) continue;
@@ -205,22 +200,20 @@ Results run_figures(const FiguresOptions& options, const fs::path& folder, bool 
     if (step == collision.step) descent = descent_table(list);
   }
   work.done(1, "frames");
-  const cli::Input input = read_scene(mixed_scene(9), {}, options.seed);
+  const cli::Input input = read_scene(mixed_scene(9), {}, request.seed);
   write_meshes(folder / "figures.obj", input.objects);
   write_file(folder / "figures_positions.f32", positions);
   work.done(1, "files");
 
   const auto name = [&](ObjectId id) { return input.objects[id.index].mesh.name; };
-  return {"figures",
-          {{"seed", fmt::format("{}", options.seed)},
-           {"frames", fmt::format("{}", options.frames)},
+  return {{modules_table(modules), std::move(snapshot), std::move(descent.value()), std::move(regions),
+           std::move(spheres), std::move(boxes)},
+          {{"frames", fmt::format("{}", frames)},
            {"middle", fmt::format("{}", collision.step - first)},
            {"objects", fmt::format("{} {}", collision.a.index, collision.b.index)},
            {"collision", fmt::format("{} and {} at {:.2f} s", name(collision.a), name(collision.b),
                                      static_cast<double>(collision.step) * input.simulation.time_step)},
-           {"cube", fmt::format("{}", *edge_of(input))}},
-          {modules_table(modules), std::move(snapshot), std::move(descent.value()), std::move(regions),
-           std::move(spheres), std::move(boxes)}};
+           {"cube", fmt::format("{}", *edge_of(input))}}};
 }
 
 }  // namespace supple::experiments

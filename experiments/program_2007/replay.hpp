@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "supple/mesh.hpp"
+#include "supple/scene.hpp"
 #include "supple/simulation.hpp"
 #include "table1/table1_options.hpp"
 
@@ -18,7 +19,7 @@ struct Replay {
   /// The objects in one frame.
   struct Frame {
     std::vector<std::vector<Vec3d>> positions;  ///< by object
-    std::vector<std::array<Vec3d, 2>> bounds;   ///< of these positions, as the loop of the motion finds
+    std::vector<std::array<Vec3d, 2>> bounds;   ///< of these positions
   };
 
   std::string name;
@@ -34,27 +35,34 @@ std::array<Vec3d, 2> bounds_of(std::span<const Vec3d> positions);
 /// of different objects are near each other, or from the sixtieth second on.
 Replay replay_of(const Table1Scene& scene, std::uint64_t seed, int frames, int steps_per_frame);
 
-/// The hierarchy that the paper chose.
-class Hierarchy {
+/// A way to detect, with one thread.
+struct Program {
+  std::string change;  ///< against the program before
+  SceneOptions scene;
+  ObjectOctreeOptions octree;
+  bool has_bounds = true;  ///< the loop of the motion finds the bounds
+};
+
+/// The hierarchy that the paper chose, without contacts.
+Program program_of_2007(const std::optional<Border>& border);
+
+/// What a program does over the frames of a replay. Seconds are those of the processor.
+struct ReplaySums {
+  double bounds = 0, refit = 0, broad = 0, narrow = 0, exact = 0, total = 0;  ///< total: with the bounds
+  std::uint64_t tests = 0, triangles_refitted = 0, candidates = 0;
+};
+
+/// A scene with the objects of a replay.
+class ReplayedScene {
  public:
-  explicit Hierarchy(const Replay& replay) : scene_(options_of(replay)) {
-    for (const TriangleMesh& mesh : replay.objects)
-      ids_.push_back(scene_.add(mesh, {.octree = octree_of_2007()}));
-  }
-  static SceneOptions options_of(const Replay& replay) {
-    SceneOptions options = with_method_of_2007({});
-    options.contacts = ContactKinds::none;
-    options.threads = 1;
-    if (replay.border) options.scene_octree.root = cube_around((*replay.border)[0], (*replay.border)[1]);
-    return options;
-  }
-  StepStats find(const Replay::Frame& frame) {
-    for (std::size_t i = 0; i < ids_.size(); ++i)
-      scene_.set_positions(ids_[i], frame.positions[i], frame.bounds[i]);
-    return scene_.detect().stats;
-  }
+  ReplayedScene(const Replay& replay, const Program& program);
+
+  ReplaySums run();  ///< one round over the frames
+  std::uint64_t octree_bytes() const;
 
  private:
+  const Replay& replay_;
+  const Program& program_;
   Scene scene_;
   std::vector<ObjectId> ids_;
 };

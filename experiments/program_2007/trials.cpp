@@ -31,14 +31,7 @@ bool overlap(const Box& a, const Box& b) {
 }
 
 Box box_of(const std::vector<Vec3d>& positions, const Triangle& triangle) {
-  Box box{positions[triangle[0]], positions[triangle[0]]};
-  for (const std::uint32_t vertex : triangle) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box[0][axis] = std::min(box[0][axis], positions[vertex][axis]);
-      box[1][axis] = std::max(box[1][axis], positions[vertex][axis]);
-    }
-  }
-  return box;
+  return bounds_of(std::array{positions[triangle[0]], positions[triangle[1]], positions[triangle[2]]});
 }
 
 /// What a trial finds in one frame.
@@ -229,26 +222,18 @@ void measure(const Replay& replay, const std::vector<TrianglePairs>& exact, cons
              vertices / frames, candidates / frames, contacts / frames, missed / frames});
 }
 
-/// The hierarchy of 2007: its candidates are its pairs of leaves. A corner that it reads is a vertex read.
-void measure_hierarchy(const Replay& replay, int round, Table& table) {
-  Hierarchy hierarchy(replay);
-  double seconds = 0, corners = 0, candidates = 0;
-  const auto frames = static_cast<double>(replay.frames.size());
-  for (const Replay::Frame& frame : replay.frames) {
-    StepStats stats;
-    seconds += seconds_of([&] { stats = hierarchy.find(frame); });
-    corners += 3 * static_cast<double>(stats.triangles_refitted);
-    candidates += static_cast<double>(stats.candidate_pairs);
-  }
-  table.add({replay.name, std::string("the hierarchy"), static_cast<std::uint64_t>(round), seconds / frames,
-             corners / frames, candidates / frames, Cell(), Cell()});
-}
-
 void measure_all(const Replay& replay, int rounds, Work& work, Table& table) {
   const std::vector<TrianglePairs> exact = exact_pairs(replay);
   const std::vector<Box> regions = regions_of_level(cube_around((*replay.border)[0], (*replay.border)[1]), 2);
+  const Program program = program_of_2007(replay.border);
+  ReplayedScene hierarchy(replay, program);
+  const auto frames = static_cast<double>(replay.frames.size());
   for (int round = 0; round < rounds; ++round) {
-    measure_hierarchy(replay, round, table);
+    // Its candidates are its pairs of leaves, and a corner that it reads is a vertex read.
+    const ReplaySums sums = hierarchy.run();
+    table.add({replay.name, "the hierarchy", static_cast<std::uint64_t>(round), sums.total / frames,
+               3 * static_cast<double>(sums.triangles_refitted) / frames,
+               static_cast<double>(sums.candidates) / frames, Cell(), Cell()});
     Neighbours neighbours(replay);
     measure(
         replay, exact, "neighbours of a vertex", round,
@@ -313,34 +298,23 @@ void add_spheres(const Replay& replay, Table& table) {
 
 }  // namespace
 
-TrialOptions trial_options(bool quick) {
-  TrialOptions options;
-  if (quick) {
-    options.with_humans = false;
-    options.frames = 20;
-    options.rounds = 3;
-  }
-  return options;
-}
-
-Results run_trials(const TrialOptions& options, bool show_progress) {
-  std::vector<Table1Scene> scenes{mixed_scene(9), {Table1Scene::Source::built_in, "nine"}};
-  if (options.with_humans) scenes.push_back({Table1Scene::Source::built_in, "three_humans"});
+Results run_trials(const Request& request) {
+  std::vector<Table1Scene> scenes{mixed_scene(9), built_in_scene("nine")};
+  if (!request.quick) scenes.push_back(built_in_scene("three_humans"));
+  const int frames = request.quick ? 20 : 100, rounds = request.quick ? 3 : 7;
   Table trials{"trials",
                {"scene", "trial", "round", "seconds", "vertices", "candidates", "contacts", "missed"}},
       corners{"trials_corners", {"scene", "all", "in_pairs"}},
       spheres{"trials_spheres",
               {"scene", "level", "in_cubes", "in_spheres", "pairs_in_cubes", "pairs_in_spheres"}};
-  Work work(scenes.size() * static_cast<std::uint64_t>(options.rounds), show_progress);
+  Work work(scenes.size() * static_cast<std::uint64_t>(rounds), request.show_progress);
   for (const Table1Scene& scene : scenes) {
-    const Replay replay = replay_of(scene, options.seed, options.frames, 5);
-    measure_all(replay, options.rounds, work, trials);
+    const Replay replay = replay_of(scene, request.seed, frames, 5);
+    measure_all(replay, rounds, work, trials);
     add_corners(replay, corners);
     add_spheres(replay, spheres);
   }
-  return {"trials",
-          {{"frames", fmt::format("{}", options.frames)}, {"seed", fmt::format("{}", options.seed)}},
-          {std::move(trials), std::move(corners), std::move(spheres)}};
+  return {{std::move(trials), std::move(corners), std::move(spheres)}};
 }
 
 }  // namespace supple::experiments

@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "plain/plain_broad_phase.hpp"
+#include "program_2007/replay.hpp"
 #include "studies/box_field.hpp"
+#include "studies/shape_pair.hpp"
 #include "supple/broad_phase.hpp"
-#include "supple/inspection.hpp"
 #include "supple/models.hpp"
 #include "supple/option_descriptions.hpp"
 #include "supple/scene.hpp"
@@ -20,8 +21,6 @@
 
 namespace supple::experiments {
 namespace {
-
-constexpr std::array models{"pawn", "fish", "rabbit", "human", "bike"};
 
 VolumeArrays volumes_of(const ClaimsOptions& options) {
   VolumeArrays volumes;
@@ -80,8 +79,6 @@ void add_depth(const char* surface, const TriangleMesh& mesh, std::uint64_t size
       scene.add(mesh, ObjectOptions{.octree = {.leaf_size = 1, .build = ObjectOctreeBuild::regular}}));
   table.add({std::string(surface), octree.triangles, size, std::uint64_t{octree.depth}, mean_depth(octree)});
 }
-
-}  // namespace
 
 /// Section 5.2: one test of two boxes, and of two spheres, by code with vectors and without.
 Table cost_of_tests(const ClaimsOptions& options) {
@@ -184,13 +181,7 @@ Table spheres_of_the_equations(const ClaimsOptions&) {
   Table table{"claims_spheres", {"model", "radius_box", "radius_vertices", "outside", "vertices"}};
   for (const char* const model : models) {
     const std::vector<Vec3d> positions = make_model(model).positions;
-    Vec3d low = positions.front(), high = low;
-    for (const Vec3d& p : positions) {
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], p[axis]);
-        high[axis] = std::max(high[axis], p[axis]);
-      }
-    }
+    const auto [low, high] = bounds_of(positions);
     const Vec3d edges = high - low;
     const double of_box = std::max({edges.x, edges.y, edges.z}) / 2;
     const Vec3d center_of_box = low + Vec3d{of_box, of_box, of_box};
@@ -205,30 +196,29 @@ Table spheres_of_the_equations(const ClaimsOptions&) {
   return table;
 }
 
-ClaimsOptions claims_options(bool quick) {
-  ClaimsOptions options;
-  if (!quick) return options;
-  options.volumes = 2048;
-  options.spheres = 10'000;
-  options.largest_frequency = 32;
-  options.motion_seconds = 2;
-  options.rounds = 3;
-  return options;
-}
+}  // namespace
 
-Results run_claims(const ClaimsOptions& options, bool show_progress) {
-  constexpr std::array<Table (*)(const ClaimsOptions&), 10> measurements{cost_of_tests,
-                                                                         region_tests,
-                                                                         depths,
-                                                                         regions_of_objects,
-                                                                         spheres_of_the_equations,
-                                                                         translation_of_volumes,
-                                                                         loops,
-                                                                         steps_of_models,
-                                                                         energies_of_integrators,
-                                                                         areas_and_strains};
-  Work work(measurements.size(), show_progress);
-  Results results{"claims", {{"seed", fmt::format("{}", options.seed)}}};
+Results run_claims(const Request& request) {
+  ClaimsOptions options{.seed = request.seed};
+  if (request.quick)
+    options = {.volumes = 2048,
+               .spheres = 10'000,
+               .largest_frequency = 32,
+               .motion_seconds = 2,
+               .rounds = 3,
+               .seed = request.seed};
+  constexpr std::array measurements{cost_of_tests,
+                                    region_tests,
+                                    depths,
+                                    regions_of_objects,
+                                    spheres_of_the_equations,
+                                    translation_of_volumes,
+                                    loops,
+                                    steps_of_models,
+                                    energies_of_integrators,
+                                    areas_and_strains};
+  Work work(measurements.size(), request.show_progress);
+  Results results;
   for (const auto measure : measurements) work.done(1, results.tables.emplace_back(measure(options)).name);
   return results;
 }

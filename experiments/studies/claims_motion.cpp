@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "studies/shape_pair.hpp"
 #include "studies/studies.hpp"
 #include "supple/models.hpp"
 #include "supple/motion.hpp"
@@ -97,7 +98,7 @@ Table loops(const ClaimsOptions& options) {
 /// Section 7: a step of each model.
 Table steps_of_models(const ClaimsOptions& options) {
   Table table{"claims_motion", {"model", "vertices", "round", "seconds"}};
-  for (const char* const model : {"pawn", "fish", "rabbit", "human", "bike"}) {
+  for (const char* const model : models) {
     MassSpringBody body = vibrating(make_model(model), Integrator::verlet);
     const double step = body.stable_step() / 2;
     constexpr int steps = 20;
@@ -134,9 +135,8 @@ Table energies_of_integrators(const ClaimsOptions& options) {
 Table areas_and_strains(const ClaimsOptions& options) {
   Table table{"claims_areas",
               {"scene", "preserved", "seconds", "mean_area_error", "mean_strain", "largest_strain"}};
-  const auto built_in = [](const char* name) { return Table1Scene{Table1Scene::Source::built_in, name}; };
   for (const Table1Scene& scene :
-       {mixed_scene(3), mixed_scene(9), built_in("three_humans"), built_in("three_bikes")}) {
+       {mixed_scene(3), mixed_scene(9), built_in_scene("three_humans"), built_in_scene("three_bikes")}) {
     for (const bool preserved : {true, false}) {
       cli::Input input = read_scene(scene, {}, options.seed);
       for (cli::InputObject& object : input.objects) {
@@ -149,7 +149,7 @@ Table areas_and_strains(const ClaimsOptions& options) {
       double error = 0, mean = 0, largest = 0, samples = 0;
       while (simulation.time() < options.motion_seconds) {
         simulation.step();
-        if (simulation.step_count() % StrainSampler::every != 0) continue;
+        if (simulation.step_count() % strain_every != 0) continue;
         for (const ObjectId id : simulation.scene().objects()) {
           const EdgeStrain strain = simulation.body(id)->edge_strain();
           error += simulation.body(id)->area_error().mean;

@@ -1,4 +1,4 @@
-#include "studies/colliding_children.hpp"
+#include "studies/shape_pair.hpp"
 
 #include <algorithm>
 #include <array>

@@ -33,8 +33,10 @@ double sphere_reads(const OctreeStatistics& octree) {
   return 3 * levels * octree.mean_leaf_size;
 }
 
-void measure_vertices(const ScalingOptions& options, Work& work, Table& counts, Table& times) {
-  for (const std::uint32_t frequency : options.frequencies) {
+/// `frequencies`: of icospheres, which have 20 f² triangles, ascending.
+void measure_vertices(const std::vector<std::uint32_t>& frequencies, int rounds, Work& work, Table& counts,
+                      Table& times) {
+  for (const std::uint32_t frequency : frequencies) {
     const TriangleMesh ball = make_icosphere(frequency), aside = moved(ball, {4, 0, 0});
     const std::uint64_t vertices = ball.positions.size();
     const auto add_times = [&](const char* what, const std::vector<double>& seconds, double objects) {
@@ -44,13 +46,13 @@ void measure_vertices(const ScalingOptions& options, Work& work, Table& counts, 
     work.done(1, fmt::format("spheres around a ball of {} triangles", ball.triangles.size()));
     SceneOptions spheres{.bounding_volume = BoundingVolume::sphere};
     add_times("refit, a sphere in each node",
-              cost_of_pair(ball, aside, octree_of_2007(), std::min(options.rounds, 3), spheres).refit, 2);
+              cost_of_pair(ball, aside, octree_of_2007(), std::min(rounds, 3), spheres).refit, 2);
     spheres.comparison.lazy_refit = true;
     add_times("refit, the sphere of the object",
-              cost_of_pair(ball, aside, octree_of_2007(), options.rounds, spheres).refit, 2);
+              cost_of_pair(ball, aside, octree_of_2007(), rounds, spheres).refit, 2);
     for (const Pose& pose : poses) {
       work.done(1, fmt::format("two balls of {} triangles, {}", ball.triangles.size(), pose.name));
-      const PairCost cost = cost_of_pair(ball, pose.place(ball), octree_of_2007(), options.rounds,
+      const PairCost cost = cost_of_pair(ball, pose.place(ball), octree_of_2007(), rounds,
                                          {.comparison = {.descent = Descent::one_side_first}});
       if (&pose == &poses.front()) {
         add_times("build", cost.build, 2);
@@ -67,27 +69,23 @@ void measure_vertices(const ScalingOptions& options, Work& work, Table& counts, 
 
 }  // namespace
 
-ScalingOptions scaling_options(bool quick, std::uint64_t seed) {
-  ScalingOptions options;
-  options.broad_phases.seed = seed;
-  if (!quick) return options;
-  options.frequencies = {8, 16, 32, 64};
-  options.rounds = 3;
-  options.broad_phases.object_counts = {3, 6, 9, 100, 200, 1000, 3162, 10'000};
-  options.broad_phases.longest_step = 0.2;
-  options.broad_phases.rounds = 5;
-  return options;
-}
-
-Results run_scaling(const ScalingOptions& options, bool show_progress) {
-  Work work(2 * options.broad_phases.object_counts.size() + 3 * options.frequencies.size(), show_progress);
-  Results results{"scaling", {{"seed", fmt::format("{}", options.broad_phases.seed)}}};
-  results.tables.push_back(measure_broad_phases(options.broad_phases, work));
+Results run_scaling(const Request& request) {
+  BroadPhasesOptions broad_phases;
+  broad_phases.seed = request.seed;
+  std::vector<std::uint32_t> frequencies{8, 16, 32, 64, 128, 224};
+  if (request.quick) {
+    frequencies.resize(4);
+    broad_phases.object_counts = {3, 6, 9, 100, 200, 1000, 3162, 10'000};
+    broad_phases.longest_step = 0.2;
+    broad_phases.rounds = 5;
+  }
+  Work work(2 * broad_phases.object_counts.size() + 3 * frequencies.size(), request.show_progress);
+  Results results{{measure_broad_phases(broad_phases, work)}};
   Table counts{"scaling_vertices",
                {"pose", "vertices", "triangles", "depth", "node_pairs", "tests", "candidates",
                 "triangles_refitted", "sphere_reads"}},
       times{"scaling_vertices_times", {"quantity", "vertices", "round", "seconds"}};
-  measure_vertices(options, work, counts, times);
+  measure_vertices(frequencies, request.quick ? 3 : 7, work, counts, times);
   results.tables.push_back(std::move(counts));
   results.tables.push_back(std::move(times));
   return results;

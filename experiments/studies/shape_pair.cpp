@@ -1,8 +1,11 @@
 #include "studies/shape_pair.hpp"
 
-#include <array>
+#include <fmt/core.h>
 
-#include "supple/inspection.hpp"
+#include <array>
+#include <utility>
+
+#include "supple/models.hpp"
 #include "supple/scene.hpp"
 #include "work.hpp"
 
@@ -31,6 +34,29 @@ TriangleMesh turned(TriangleMesh mesh) {
 TriangleMesh moved(TriangleMesh mesh, Vec3d offset) {
   for (Vec3d& p : mesh.positions) p = p + offset;
   return mesh;
+}
+
+PosedPair posed_pair(std::string name, const TriangleMesh& a, const TriangleMesh& b,
+                     const std::vector<Vec3d>& offsets) {
+  PosedPair pair{std::move(name), a, {}};
+  for (const Vec3d& offset : offsets) pair.b.push_back(moved(turned(b), offset));
+  return pair;
+}
+
+std::vector<PosedPair> posed_pairs(bool with_bikes, std::uint32_t frequency) {
+  std::vector<PosedPair> all;
+  const auto add = [&](const char* name, const char* a, const char* b) {
+    all.push_back(posed_pair(name, make_model(a), make_model(b),
+                             {{0.1, 0.05, 0.1}, {0.3, 0.1, 0.05}, {0.55, 0.15, 0.1}}));
+  };
+  add("pawn, fish", "pawn", "fish");
+  add("rabbits", "rabbit", "rabbit");
+  add("humans", "human", "human");
+  if (with_bikes) add("bikes", "bike", "bike");
+  const TriangleMesh ball = make_icosphere(frequency);
+  all.push_back(posed_pair(fmt::format("balls of {} triangles", ball.triangles.size()), ball, ball,
+                           {{0.25, 0, 0}, {1, 0.125, 0.0625}, {1.75, 0.25, 0}}));
+  return all;
 }
 
 PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree,
@@ -68,11 +94,19 @@ PairCost cost_of_pair(const TriangleMesh& a, const TriangleMesh& b, const Object
   return cost;
 }
 
-NodePairList node_pairs_of(const TriangleMesh& a, const TriangleMesh& b, const ObjectOctreeOptions& octree) {
+double mean_depth(const OctreeStatistics& octree) {
+  double sum = 0;
+  for (std::size_t level = 0; level < octree.leaves_by_level.size(); ++level)
+    sum += static_cast<double>(level) * static_cast<double>(octree.leaves_by_level[level]);
+  return octree.leaves == 0 ? 0 : sum / static_cast<double>(octree.leaves);
+}
+
+CollidingChildren colliding_children(const TriangleMesh& a, const TriangleMesh& b,
+                                     const ObjectOctreeOptions& octree) {
   Scene scene(SceneOptions{.contacts = ContactKinds::none});
   const ObjectId id_a = scene.add(a, regular(octree)), id_b = scene.add(b, regular(octree));
   scene.detect();
-  return SceneInspector(scene).node_pairs(id_a, id_b);
+  return colliding_children(SceneInspector(scene).node_pairs(id_a, id_b), octree.arity);
 }
 
 }  // namespace supple::experiments

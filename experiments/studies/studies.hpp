@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "results.hpp"
-#include "supple/inspection.hpp"
 #include "work.hpp"
 
 namespace supple::experiments {
@@ -24,49 +23,19 @@ struct BroadPhasesOptions {
 /// methods find different numbers of pairs.
 Table measure_broad_phases(const BroadPhasesOptions& options, Work& work);
 
-struct ScalingOptions {
-  BroadPhasesOptions broad_phases{};
-  std::vector<std::uint32_t> frequencies{8,  16,  32,
-                                         64, 128, 224};  ///< of icospheres, ascending: 20 f² triangles
-  int rounds = 7;                                        ///< in motion, ≥ 2
-};
-
-ScalingOptions scaling_options(bool quick, std::uint64_t seed);
-
 /// Times and tests against the number of objects and of vertices.
-Results run_scaling(const ScalingOptions& options, bool show_progress);
-
-struct ArityOptions {
-  std::uint32_t frequency = 128;  ///< of the spheres: 20 f² triangles
-  std::uint32_t rings = 512;      ///< of the tori: r² triangles
-  bool with_bikes = true;
-  std::vector<std::size_t> box_counts{1000, 10'000, 100'000};  ///< of scenes, ascending
-  int rounds = 5;                                              ///< ≥ 1
-  std::uint64_t seed = 1;
-};
-
-ArityOptions arity_options(bool quick);
-
-/// The mean level of the leaves; 0 for an octree without leaves.
-double mean_depth(const OctreeStatistics& octree);
+Results run_scaling(const Request& request);
 
 /// Trees of two, four and eight children, of objects and of the scene, with one thread. Times are the least
 /// of the rounds.
-Results run_arity(const ArityOptions& options, bool show_progress);
-
-struct VolumesOptions {
-  bool with_bikes = true;
-  std::uint32_t frequency = 64;  ///< of the spheres: 20 f² triangles
-  int deformed_frames = 40;      ///< frames of each deforming scene, ≥ 1
-  int rounds = 5;                ///< ≥ 1; the fastest counts
-  std::uint64_t seed = 1;
-};
-
-VolumesOptions volumes_options(bool quick);
+Results run_arity(const Request& request);
 
 /// All kinds of bounding volumes and all ways to build the octrees of objects on the same frames, with one
-/// thread.
-Results run_volumes(const VolumesOptions& options, bool show_progress);
+/// thread. Times are the least of the rounds.
+Results run_volumes(const Request& request);
+
+/// What single claims of the paper need that no other experiment measures, with one thread.
+Results run_claims(const Request& request);
 
 struct ClaimsOptions {
   std::size_t volumes = 4096;            ///< of each kind, for the cost of one test
@@ -76,19 +45,7 @@ struct ClaimsOptions {
   int rounds = 9;                        ///< ≥ 2
   std::uint64_t seed = 1;
 };
-
-ClaimsOptions claims_options(bool quick);
-
-/// What single claims of the paper need that no other experiment measures, with one thread.
-Results run_claims(const ClaimsOptions& options, bool show_progress);
-
-// Volumes and octrees; each runs alone.
-Table cost_of_tests(const ClaimsOptions& options);
-Table region_tests(const ClaimsOptions& options);
-Table depths(const ClaimsOptions& options);
-Table regions_of_objects(const ClaimsOptions& options);
-Table spheres_of_the_equations(const ClaimsOptions& options);
-// Motion.
+// Those about motion; each runs alone.
 Table translation_of_volumes(const ClaimsOptions& options);
 Table loops(const ClaimsOptions& options);
 Table steps_of_models(const ClaimsOptions& options);

@@ -28,34 +28,18 @@ struct Poses {
   std::vector<std::vector<std::vector<Vec3d>>> frames{};  // frame, object, vertex
 };
 
-/// Two objects in three poses relative to each other.
-Poses poses_of(const std::string& name, const TriangleMesh& a, const TriangleMesh& b,
-               const std::vector<Vec3d>& offsets) {
-  Poses result{name, {a, turned(b)}};
-  for (const Vec3d& offset : offsets)
-    result.frames.push_back({a.positions, moved(result.objects[1], offset).positions});
-  return result;
-}
-
-/// Every tenth step of a scene.
-Poses deforming(const Table1Scene& scene, const VolumesOptions& options) {
-  Replay replay = replay_of(scene, options.seed, options.deformed_frames, 10);
-  Poses result{replay.name + ", deforming", std::move(replay.objects)};
-  for (Replay::Frame& frame : replay.frames) result.frames.push_back(std::move(frame.positions));
-  return result;
-}
-
-std::vector<Poses> make_cases(const VolumesOptions& options) {
-  const std::vector<Vec3d> offsets{{0.1, 0.05, 0.1}, {0.3, 0.1, 0.05}, {0.55, 0.15, 0.1}};
-  const TriangleMesh ball = make_icosphere(options.frequency);
-  std::vector<Poses> cases{
-      poses_of("pawn, fish", make_model("pawn"), make_model("fish"), offsets),
-      poses_of("rabbits", make_model("rabbit"), make_model("rabbit"), offsets),
-      poses_of("humans", make_model("human"), make_model("human"), offsets),
-      poses_of("balls", ball, ball, {{0.25, 0, 0}, {1, 0.125, 0.0625}, {1.75, 0.25, 0}})};
-  if (options.with_bikes) cases.push_back(poses_of("bikes", make_model("bike"), make_model("bike"), offsets));
-  cases.push_back(deforming(mixed_scene(9), options));
-  cases.push_back(deforming({Table1Scene::Source::built_in, "three_humans"}, options));
+std::vector<Poses> make_cases(const Request& request) {
+  std::vector<Poses> cases;
+  for (PosedPair& pair : posed_pairs(!request.quick, request.quick ? 16 : 64)) {
+    Poses& added = cases.emplace_back(Poses{pair.name, {pair.a, pair.b.front()}});
+    for (const TriangleMesh& b : pair.b) added.frames.push_back({pair.a.positions, b.positions});
+  }
+  // Every tenth step of scenes.
+  for (const Table1Scene& scene : {mixed_scene(9), built_in_scene("three_humans")}) {
+    Replay replay = replay_of(scene, request.seed, request.quick ? 5 : 40, 10);
+    Poses& added = cases.emplace_back(Poses{replay.name + ", deforming", std::move(replay.objects)});
+    for (Replay::Frame& frame : replay.frames) added.frames.push_back(std::move(frame.positions));
+  }
   return cases;
 }
 
@@ -110,7 +94,7 @@ std::uint64_t add_contacts(std::uint64_t hash, std::span<const Contact> contacts
 }
 
 /// One row: sums over the frames; times are those of the fastest round.
-void measure(const Poses& shapes, const Choice& variant, const VolumesOptions& options, Table& table) {
+void measure(const Poses& shapes, const Choice& variant, int rounds, Table& table) {
   Scene scene({.bounding_volume = variant.volume,
                .contact_points = false,
                .threads = 1,
@@ -119,7 +103,7 @@ void measure(const Poses& shapes, const Choice& variant, const VolumesOptions& o
   std::uint64_t bytes = 0, object_pairs = 0, node_pairs = 0, tests = 0, candidates = 0, contacts = 0,
                 hash = 0;
   std::vector<ObjectId> ids;
-  for (int round = 0; round < options.rounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     for (const ObjectId id : ids) scene.remove(id);
     build = std::min(build, seconds_of([&] { ids = add_all(scene, shapes, variant); }));
     double refits = 0, queries = 0;
@@ -147,24 +131,11 @@ void measure(const Poses& shapes, const Choice& variant, const VolumesOptions& o
 
 }  // namespace
 
-VolumesOptions volumes_options(bool quick) {
-  VolumesOptions options;
-  if (!quick) return options;
-  options.with_bikes = false;
-  options.frequency = 16;
-  options.deformed_frames = 5;
-  options.rounds = 2;
-  return options;
-}
-
-Results run_volumes(const VolumesOptions& options, bool show_progress) {
-  const std::vector<Poses> cases = make_cases(options);
+Results run_volumes(const Request& request) {
+  const std::vector<Poses> cases = make_cases(request);
   const std::vector<Choice> volumes = volume_variants(), builds = build_variants();
-  Work work(cases.size() * (volumes.size() + builds.size()), show_progress);
-  Results results{"volumes",
-                  {{"seed", fmt::format("{}", options.seed)},
-                   {"frames of each deforming scene", fmt::format("{}", options.deformed_frames)},
-                   {"rounds", fmt::format("{}", options.rounds)}}};
+  Work work(cases.size() * (volumes.size() + builds.size()), request.show_progress);
+  Results results;
   for (const bool is_volume : {true, false}) {
     Table& table = results.tables.emplace_back(Table{
         is_volume ? "volumes" : "volumes_builds",
@@ -172,7 +143,7 @@ Results run_volumes(const VolumesOptions& options, bool show_progress) {
          "object_pairs", "node_pairs", "tests", "candidates", "contacts", "hash_of_contacts"}});
     for (const Poses& shapes : cases) {
       for (const Choice& variant : is_volume ? volumes : builds) {
-        measure(shapes, variant, options, table);
+        measure(shapes, variant, request.quick ? 2 : 5, table);
         work.done(1, fmt::format("{}, {}", shapes.name, variant.name));
       }
     }

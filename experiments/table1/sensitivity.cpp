@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "results.hpp"
-#include "table1/table1.hpp"
 #include "table1/table1_runs.hpp"
 
 namespace supple::experiments {
@@ -69,9 +68,9 @@ std::vector<Setting> settings() {
 
 }  // namespace
 
-bool run_sensitivity(const Table1Options& options, bool quick, const std::filesystem::path& folder,
-                     bool resume, const cli::Interruption& interruption, bool show_progress) {
-  make_folder(folder);
+bool run_sensitivity(const Table1Options& options, const Request& request, bool resume,
+                     const cli::Interruption& interruption) {
+  const bool quick = request.quick;
   std::vector<Motion> motions;
   for (const std::uint32_t objects : {3u, 6u, 9u}) {
     // Three objects collide rarely.
@@ -89,10 +88,14 @@ bool run_sensitivity(const Table1Options& options, bool quick, const std::filesy
         };
     }
   }
-  RunLog log(folder, "sensitivity", resume);
   return run_all(motions,
-                 {.runs = quick ? 2 : options.runs, .seed = options.seed, .threads = options.threads}, log,
-                 interruption, show_progress);
+                 {.folder = request.folder,
+                  .name = "sensitivity",
+                  .resume = resume,
+                  .runs = quick ? 2 : options.runs,
+                  .seed = options.seed,
+                  .threads = options.threads},
+                 interruption, request.show_progress);
 }
 
 }  // namespace supple::experiments

@@ -27,6 +27,7 @@ struct Table1Scene {
 
 /// The number of objects of a mixed scene, `table1_9`.
 Table1Scene mixed_scene(std::uint32_t objects, std::optional<double> size = {});
+Table1Scene built_in_scene(const std::string& name);
 /// A scene that is built into the program, or a scene file.
 Table1Scene scene_called(const std::string& name);
 
@@ -67,8 +68,6 @@ void for_each_option(Visitor&& visitor, Method& method) {
 
 /// Whether the condition is met with one of the volumes of the method.
 bool is_met(const cli::OptionNeed& need, const Table1Method& method);
-/// Whether the option with this key has an effect with one of the volumes of the method.
-bool has_effect(const Table1Method& method, std::string_view key);
 
 struct Table1Options {
   std::vector<Table1Scene> scenes;
@@ -83,9 +82,5 @@ struct Table1Options {
 /// The scenes of section 7: 3, 6 and 9 objects; 12, 20 and 30, of which its text speaks; 9 objects in a
 /// smaller cube; three humans and three bikes. With `quick`, a small part of the experiment.
 Table1Options default_table1_options(bool quick);
-
-/// Every option that decides the results, as on the command line: `--broad-phase`, `octree`. Options without
-/// effect are left out. Throws as `read_scene` does.
-std::vector<std::pair<std::string, std::string>> describe(const Table1Options& options);
 
 }  // namespace supple::experiments

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <mutex>
+#include <sstream>
 #include <utility>
 
 #include "commands/build_simulation.hpp"
-#include "machine.hpp"
 #include "program_2007/replay.hpp"
+#include "results.hpp"
 #include "session/settings.hpp"
 #include "table1/table1_scenes.hpp"
 #include "work.hpp"
@@ -35,36 +37,24 @@ SimulationOptions options_of(const Variant& variant, const cli::Input& input) {
   return options;
 }
 
-/// The objects of a simulation in a scene of their own.
-struct FollowingScene {
-  Scene scene;
-  std::vector<ObjectId> ids{};
-
-  FollowingScene(const SceneOptions& options, const ObjectOctreeOptions& octree, const cli::Input& input,
-                 const Simulation& simulation)
-      : scene(options) {
-    for (std::size_t i = 0; i < input.objects.size(); ++i) {
-      TriangleMesh mesh = input.objects[i].mesh;
-      const auto start = simulation.positions(simulation.scene().objects()[i]);
-      mesh.positions.assign(start.begin(), start.end());
-      ObjectOptions object = input.objects[i].options;
-      object.octree = octree;
-      ids.push_back(scene.add(mesh, object));
-    }
-  }
-};
-
 /// A variant that follows the motion of a simulation.
 class Follower {
  public:
   Follower(const Variant& variant, const cli::Input& input, const Simulation& simulation, bool exact)
       : options_(options_of(variant, input)) {
-    SceneOptions options = options_.scene;
-    options.contacts = ContactKinds::none;
-    timed_ = std::make_unique<FollowingScene>(options, variant.method.octree, input, simulation);
-    if (!exact) return;
-    options.contacts = ContactKinds::intersection;
-    exact_ = std::make_unique<FollowingScene>(options, variant.method.octree, input, simulation);
+    options_.scene.contacts = ContactKinds::none;
+    timed_ = std::make_unique<Scene>(options_.scene);
+    options_.scene.contacts = ContactKinds::intersection;
+    if (exact) exact_ = std::make_unique<Scene>(options_.scene);
+    for (std::size_t i = 0; i < input.objects.size(); ++i) {
+      TriangleMesh mesh = input.objects[i].mesh;
+      const auto start = simulation.positions(simulation.scene().objects()[i]);
+      mesh.positions.assign(start.begin(), start.end());
+      ObjectOptions object = input.objects[i].options;
+      object.octree = variant.method.octree;
+      ids_.push_back(timed_->add(mesh, object));
+      if (exact_) exact_->add(mesh, object);  // with the same id
+    }
   }
 
   void detect(const Simulation& simulation, RunCounts& counts) {
@@ -74,27 +64,37 @@ class Follower {
       const auto positions = simulation.positions(objects[i]);
       if (options_.fused_refit && simulation.body(objects[i]) != nullptr)
         counts.bounds_seconds += seconds_of([&] { bounds = bounds_of(positions); });
-      timed_->scene.set_positions(timed_->ids[i], positions, bounds);
-      if (exact_) exact_->scene.set_positions(exact_->ids[i], positions, bounds);
+      timed_->set_positions(ids_[i], positions, bounds);
+      if (exact_) exact_->set_positions(ids_[i], positions, bounds);
     }
-    const TimedDetection detection(timed_->scene);
+    const TimedDetection detection(*timed_);
     counts.detection_seconds += detection.total;
     counts.broad += detection.result->volume_events.begin.size();
     counts.narrow += detection.result->narrow_phase_events.begin.size();
-    if (exact_) counts.exact += exact_->scene.detect().contact_events.begin.size();
+    if (exact_) counts.exact += exact_->detect().contact_events.begin.size();
   }
 
  private:
   SimulationOptions options_;
-  std::unique_ptr<FollowingScene> timed_, exact_;
+  std::unique_ptr<Scene> timed_, exact_;
+  std::vector<ObjectId> ids_;
 };
 
-/// The run_columns that say which run a row is, and all run_columns.
-constexpr std::size_t key_columns = 6;
+/// The first six say which run a row is.
 const std::vector<std::string> run_columns{
-    "setting",        "scene",       "edge",         "volume",      "seed",           "objects",
-    "broad",          "narrow",      "exact",        "steps",       "bounds_seconds", "detection_seconds",
-    "motion_seconds", "mean_strain", "least_strain", "most_strain", "largest_strain", "failure"};
+    "setting",        "scene",       "edge",           "volume", "seed",           "objects",
+    "broad",          "narrow",      "exact",          "steps",  "bounds_seconds", "detection_seconds",
+    "motion_seconds", "mean_strain", "largest_strain", "failure"};
+
+/// Adds a sample of the bodies: the mean over samples, bodies and edges, and the largest strain of an edge.
+void sample_strain(const Simulation& simulation, double& samples, double& mean, double& largest) {
+  for (const ObjectId id : simulation.scene().objects()) {
+    if (simulation.body(id) == nullptr) continue;
+    const EdgeStrain strain = simulation.body(id)->edge_strain();
+    mean += (strain.mean - mean) / ++samples;
+    largest = std::max(largest, strain.largest);
+  }
+}
 
 /// Steps of the motion in `seconds` of simulated time.
 std::uint64_t steps_in(double seconds, const cli::Input& input) {
@@ -102,26 +102,6 @@ std::uint64_t steps_in(double seconds, const cli::Input& input) {
 }
 
 }  // namespace
-
-void StrainSampler::add(const Simulation& simulation, RunStrain& strain) {
-  double sum = 0, bodies = 0;
-  for (const ObjectId id : simulation.scene().objects()) {
-    const MassSpringBody* const body = simulation.body(id);
-    if (body == nullptr) continue;
-    const EdgeStrain of_body = body->edge_strain();
-    strain.largest = std::max(strain.largest, of_body.largest);
-    sum += of_body.mean;
-    ++bodies;
-  }
-  if (bodies == 0) return;
-  ++samples_;
-  const double mean = sum / bodies;
-  strain.mean += (mean - strain.mean) / samples_;
-  if (simulation.time() < 1) return;
-  strain.least = is_first_ ? mean : std::min(strain.least, mean);
-  strain.most = std::max(strain.most, mean);
-  is_first_ = false;
-}
 
 Simulation build_variant(cli::Input& input, const Variant& variant) {
   input.simulation = options_of(variant, input);
@@ -149,8 +129,7 @@ std::vector<RunCounts> run_scene(const Motion& motion, std::uint64_t seed, bool 
     }
   };
   count_all();
-  StrainSampler sampler;
-  RunStrain strain;
+  double strain_samples = 0, mean_strain = 0, largest_strain = 0;
   try {
     for (;;) {
       for (std::size_t i = 0; i < counts.size(); ++i) runs[i] = runs[i] && go_on(counts[i]);
@@ -158,12 +137,14 @@ std::vector<RunCounts> run_scene(const Motion& motion, std::uint64_t seed, bool 
       double step = seconds_of([&] { simulation.step(); });
       const double detection = simulation.scene().result().stats.total_seconds;
       step *= simulation.motion_seconds() / (simulation.motion_seconds() + detection);
-      if (simulation.step_count() % StrainSampler::every == 0) sampler.add(simulation, strain);
+      if (simulation.step_count() % strain_every == 0)
+        sample_strain(simulation, strain_samples, mean_strain, largest_strain);
       for (std::size_t i = 0; i < counts.size(); ++i) {
         if (!runs[i]) continue;
         ++counts[i].steps;
         counts[i].motion_seconds += step;
-        counts[i].strain = strain;
+        counts[i].mean_strain = mean_strain;
+        counts[i].largest_strain = largest_strain;
       }
       count_all();
     }
@@ -176,52 +157,52 @@ std::vector<RunCounts> run_scene(const Motion& motion, std::uint64_t seed, bool 
 }
 
 RunLog::RunLog(const std::filesystem::path& folder, const std::string& name, bool resume) {
+  make_folder(folder);
   const std::filesystem::path path = folder / (name + ".csv");
-  const std::string header = csv_head() + csv_of(Table{name, run_columns});
-  std::size_t length = 0;
-  if (resume && std::filesystem::exists(path)) {
-    const std::string text = cli::read_text(path);
-    const CsvText csv = parse_csv(text);
-    if (!csv.rows.empty() && csv.rows.front() != run_columns)
+  const std::string columns = csv_of(Table{name, run_columns}), head = csv_head() + columns;
+  const bool goes_on = resume && std::filesystem::exists(path);
+  text_ = goes_on ? cli::read_text(path) : head;
+  // A program that was killed leaves an incomplete line behind.
+  text_.resize(text_.rfind('\n') + 1);
+  std::istringstream lines(text_), expected(head);
+  std::string line, ours;
+  while (std::getline(expected, ours)) {
+    std::getline(lines, line);
+    if (line != ours && !ours.starts_with("# date: "))
       throw Error(
-          fmt::format("{}: has other run_columns than this program writes; leave out --resume to start again",
-                      path.string()));
-    for (std::size_t i = 1; i < csv.rows.size(); ++i) {
-      const std::vector<std::string>& row = csv.rows[i];
-      const auto is_number = [](const std::string& field) {
-        return field.find_first_not_of("0123456789.+-e") == std::string::npos;
-      };
-      if (row.size() != run_columns.size() ||
-          !std::all_of(row.begin() + key_columns, row.end() - 1, is_number))
-        throw Error(fmt::format("{}: row {} is not a run; remove it, or leave out --resume to start again",
-                                path.string(), i));
-      done_.insert(csv_of(std::vector<Cell>(row.begin(), row.begin() + key_columns)));
-    }
-    length = csv.length;
-    // A program that was killed leaves an incomplete line behind.
-    if (length < text.size()) std::filesystem::resize_file(path, length);
+          fmt::format("--resume: {} has '{}', and this program writes '{}'; give the same command to the "
+                      "same program on the same machine, or leave out --resume to start again",
+                      path.string(), line, ours));
   }
-  file_.emplace(path.string(), length > 0 ? cli::OutputFile::Mode::append : cli::OutputFile::Mode::replace);
-  if (length == 0) std::fwrite(header.data(), 1, header.size(), file_->stream());
-  std::fflush(file_->stream());
-  file_->check();
+  for (std::size_t number = 1; std::getline(lines, line); ++number) {
+    if (std::count(line.begin(), line.end(), ',') + 1 < std::ssize(run_columns))
+      throw Error(fmt::format("{}: row {} is not a run; remove it, or leave out --resume to start again",
+                              path.string(), number));
+  }
+  if (goes_on)
+    std::filesystem::resize_file(path, text_.size());
+  else
+    write_file(path, text_);
+  file_.emplace(path.string(), cli::OutputFile::Mode::append);
 }
 
 bool RunLog::has(const std::vector<Cell>& key) const {
-  return done_.contains(csv_of(key));
+  std::string start = '\n' + csv_of(key);
+  start.back() = ',';
+  return text_.find(start) != std::string::npos;
 }
 
 void RunLog::add(std::vector<Cell> row, const RunCounts& run) {
-  row.insert(row.end(), {run.broad, run.narrow, run.exact, run.steps, run.bounds_seconds,
-                         run.detection_seconds, run.motion_seconds, run.strain.mean, run.strain.least,
-                         run.strain.most, run.strain.largest, run.failure});
+  row.insert(row.end(),
+             {run.broad, run.narrow, run.exact, run.steps, run.bounds_seconds, run.detection_seconds,
+              run.motion_seconds, run.mean_strain, run.largest_strain, run.failure});
   const std::string line = csv_of(row);
   std::fwrite(line.data(), 1, line.size(), file_->stream());
   std::fflush(file_->stream());
   file_->check();
 }
 
-bool run_all(const std::vector<Motion>& motions, const RunOptions& options, RunLog& log,
+bool run_all(const std::vector<Motion>& motions, const RunOptions& options,
              const cli::Interruption& interruption, bool show_progress) {
   constexpr double ticks = 64;  // of progress in a second of a run
   struct Task {
@@ -229,12 +210,16 @@ bool run_all(const std::vector<Motion>& motions, const RunOptions& options, RunL
     std::uint64_t seed, steps;
     std::vector<std::vector<Cell>> keys{};
   };
+  std::vector<cli::Input> inputs;
+  for (const Motion& motion : motions)
+    inputs.push_back(read_scene(motion.scene, motion.variants.front().method.integrator, options.seed));
+  RunLog log(options.folder, options.name, options.resume);
   std::vector<Task> tasks;
   double total = 0;
   // In the order of the table, so that an interrupted experiment has complete rows.
-  for (const Motion& motion : motions) {
-    const cli::Input input =
-        read_scene(motion.scene, motion.variants.front().method.integrator, options.seed);
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    const Motion& motion = motions[m];
+    const cli::Input& input = inputs[m];
     const std::optional<double> edge = edge_of(input);
     for (std::uint32_t run = 0; run < options.runs; ++run) {
       Task task{motion, options.seed + run, steps_in(motion.seconds, input)};

@@ -4,16 +4,14 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <set>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "base/files.hpp"
 #include "base/interruption.hpp"
 #include "inputs/inputs.hpp"
+#include "results.hpp"
 #include "supple/simulation.hpp"
-#include "table.hpp"
 #include "table1/table1_options.hpp"
 
 namespace supple::experiments {
@@ -21,23 +19,7 @@ namespace supple::experiments {
 /// How long a run lasts: in simulated time, or by the clock of its detection and motion together.
 enum class RunClock { simulated, program };
 
-/// The strain of edges in a run, sampled every 25 steps; 0 without bodies of masses and springs.
-struct RunStrain {
-  double mean = 0;             ///< over bodies and samples, of the mean over the edges of a body
-  double least = 0, most = 0;  ///< of the means of the samples from the second second on
-  double largest = 0;          ///< of an edge
-};
-
-class StrainSampler {
- public:
-  static constexpr std::uint64_t every = 25;  // steps
-
-  void add(const Simulation& simulation, RunStrain& strain);
-
- private:
-  double samples_ = 0;
-  bool is_first_ = true;
-};
+constexpr std::uint64_t strain_every = 25;  // steps
 
 /// Numbers of collisions that begin in one run. Times are those of the processor.
 struct RunCounts {
@@ -48,8 +30,8 @@ struct RunCounts {
   double bounds_seconds = 0;     ///< of the loop that makes the boxes of the bodies, when it is fused
   double detection_seconds = 0;  ///< of all steps: refit, broad phase and narrow phase, not the exact stage
   double motion_seconds = 0;     ///< of all steps, with its own loop that makes the boxes
-  RunStrain strain{};
-  std::string failure{};  ///< why the motion failed; empty on success
+  double mean_strain = 0, largest_strain = 0;  ///< of edges, each `strain_every` steps; 0 without bodies
+  std::string failure{};                       ///< why the motion failed; empty on success
 };
 
 /// One way to find the collisions of a run.
@@ -80,19 +62,22 @@ std::vector<RunCounts> run_scene(const Motion& motion, std::uint64_t seed, bool 
 /// The complete runs, in a CSV file that gets a row as soon as a run is complete.
 class RunLog {
  public:
-  /// Starts the file in a folder, or with `resume` keeps its rows and its head. Throws `Error` when the file
-  /// is not such a table.
+  /// Starts the file in a folder, which is created if necessary, or with `resume` keeps its rows. Throws
+  /// `Error` when the file is not such a table, or when its head names another command, commit or machine.
   RunLog(const std::filesystem::path& folder, const std::string& name, bool resume);
 
   bool has(const std::vector<Cell>& key) const;
   void add(std::vector<Cell> key, const RunCounts& counts);
 
  private:
-  std::set<std::string> done_;
+  std::string text_;  ///< of the complete lines
   std::optional<cli::OutputFile> file_;
 };
 
 struct RunOptions {
+  std::filesystem::path folder;
+  std::string name;     ///< of the log
+  bool resume = false;  ///< go on with the log
   RunClock clock = RunClock::simulated;
   std::uint32_t runs = 5;  ///< of each motion; run k has the seed `seed` + k
   std::uint64_t seed = 1;
@@ -101,8 +86,20 @@ struct RunOptions {
 };
 
 /// Runs all motions that are not in the log. Runs by the clock of the program run one after the other.
-/// Returns false after an interruption.
-bool run_all(const std::vector<Motion>& motions, const RunOptions& options, RunLog& log,
+/// Returns false after an interruption. Throws `Error` as `read_scene` and `RunLog` do.
+bool run_all(const std::vector<Motion>& motions, const RunOptions& options,
              const cli::Interruption& interruption, bool show_progress);
+
+/// Runs scenes with each kind of volume and counts the collisions that begin: table1_runs.csv in simulated
+/// time, table1_program_runs.csv by the clock of the program. With `resume`, what is complete in the folder
+/// is not repeated. Returns false after an interruption.
+bool run_table1(const Table1Options& options, const Request& request, bool resume,
+                const cli::Interruption& interruption);
+
+/// The setting that the paper does not state may give its ratio of spheres to boxes: runs 3, 6 and 9 objects
+/// with other sizes of the scene, speeds, both together, stiffness and forces of the bodies, levels and
+/// leaves of the octrees: sensitivity.csv, and with `resume` only what it does not have.
+bool run_sensitivity(const Table1Options& options, const Request& request, bool resume,
+                     const cli::Interruption& interruption);
 
 }  // namespace supple::experiments

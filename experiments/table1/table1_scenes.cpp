@@ -128,15 +128,6 @@ cli::Input read_scene(const Table1Scene& scene, std::optional<Integrator> integr
   return input;
 }
 
-std::uint64_t hash_of(const Table1Options& options) {
-  std::uint64_t hash = 0;
-  for (const Table1Scene& scene : options.scenes) {
-    for (const char c : read_scene(scene, options.method.integrator, options.seed).scene_text)
-      hash = cli::scrambled(hash ^ static_cast<unsigned char>(c));
-  }
-  return hash;
-}
-
 std::optional<double> edge_of(const cli::Input& input) {
   if (!input.simulation.border) return std::nullopt;
   const Vec3d edges = (*input.simulation.border)[1] - (*input.simulation.border)[0];

@@ -33,9 +33,6 @@ bool is_built_in(std::string_view name);
 /// size or integrator have no effect on the scene.
 cli::Input read_scene(const Table1Scene& scene, std::optional<Integrator> integrator, std::uint64_t seed);
 
-/// A number that depends on the text of all scenes. Throws as `read_scene` does.
-std::uint64_t hash_of(const Table1Options& options);
-
 /// The longest edge of the border; none when the scene has no border.
 std::optional<double> edge_of(const cli::Input& input);
 

@@ -20,7 +20,7 @@ except ImportError:
     sys.exit(77)
 
 COLUMNS = ("setting", "scene", "edge", "volume", "seed", "objects", "broad", "narrow", "exact", "steps", "bounds_seconds",
-           "detection_seconds", "motion_seconds", "mean_strain", "least_strain", "most_strain", "largest_strain", "failure")
+           "detection_seconds", "motion_seconds", "mean_strain", "largest_strain", "failure")
 
 
 class Estimates(unittest.TestCase):

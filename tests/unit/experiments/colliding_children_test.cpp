@@ -1,4 +1,4 @@
-#include "experiments/studies/colliding_children.hpp"
+#include "experiments/studies/shape_pair.hpp"
 
 #include <gtest/gtest.h>
 

@@ -117,39 +117,4 @@ TEST(PlainBroadPhase, FindsWhatBruteForceFindsAlsoOutsideOfTheCube) {
   EXPECT_EQ(plain_three_lists()->step(touching), 6u);
 }
 
-TEST(Scaling, HasEachQuantityAtEachSize) {
-  ScalingOptions options;
-  options.broad_phases.object_counts = {3};
-  options.broad_phases.rounds = 2;
-  options.frequencies = {2, 4};
-  options.rounds = 2;
-  const Results results = run_scaling(options, false);
-  ASSERT_EQ(results.tables.size(), 3u);
-  EXPECT_EQ(results.tables[1].rows.size(), 4u);
-  std::map<std::string, std::set<std::uint64_t>> sizes;
-  for (const auto& row : results.tables[2].rows) sizes[word_of(row[0])].insert(count_of(row[1]));
-  EXPECT_EQ(sizes.size(), 6u);
-  for (const auto& [quantity, of_quantity] : sizes) EXPECT_EQ(of_quantity.size(), 2u) << quantity;
-}
-
-TEST(Arity, HasEveryArity) {
-  ArityOptions options;
-  options.frequency = 4;
-  options.rings = 12;
-  options.box_counts = {100, 300};
-  options.with_bikes = false;
-  options.rounds = 1;
-  const Results results = run_arity(options, false);
-  const auto& rows = results.tables[0].rows;
-  ASSERT_EQ(rows.size(), 30u);
-  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(std::get<std::uint64_t>(rows[i][2]), 2u << (i % 3));
-  const auto& scenes = results.tables[2].rows;
-  ASSERT_EQ(scenes.size(), 6u);
-  for (std::size_t i = 0; i < 6; i += 3) {
-    constexpr std::size_t pairs = 5;
-    EXPECT_EQ(scenes[i][pairs], scenes[i + 1][pairs]);
-    EXPECT_EQ(scenes[i][pairs], scenes[i + 2][pairs]);
-  }
-}
-
 }  // namespace supple::experiments::experiments_test

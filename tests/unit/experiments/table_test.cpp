@@ -1,4 +1,4 @@
-#include "experiments/table.hpp"
+#include "experiments/results.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,20 +18,6 @@ Table small_table() {
 TEST(Table, CsvQuotesAndKeepsNumbersWhole) {
   EXPECT_EQ(csv_of(small_table()), "word,count,number_ms\n\"a, \"\"b\"\"\",1234567,0.1\n<c>,,1234.5678\n");
   EXPECT_EQ(csv_of(std::vector<Cell>{NAN, std::string()}), ",\n");
-}
-
-TEST(Table, CsvIsReadBack) {
-  const CsvText csv = parse_csv(csv_of(small_table()) + "torn,\"off");
-  EXPECT_EQ(csv.rows,
-            (std::vector<std::vector<std::string>>{
-                {"word", "count", "number_ms"}, {"a, \"b\"", "1234567", "0.1"}, {"<c>", "", "1234.5678"}}));
-  EXPECT_EQ(csv.length, csv_of(small_table()).size());
-  EXPECT_EQ(parse_csv("\"\",\"\"\"\",\"a\nb\"\n").rows,
-            (std::vector<std::vector<std::string>>{{"", "\"", "a\nb"}}));
-  EXPECT_TRUE(parse_csv("").rows.empty());
-  const std::string commented = "# a: b,\"c\n#\nx\n" + csv_of(std::vector<Cell>{std::string("#1")});
-  EXPECT_EQ(parse_csv(commented + "# torn").rows, (std::vector<std::vector<std::string>>{{"x"}, {"#1"}}));
-  EXPECT_EQ(parse_csv(commented + "# torn").length, commented.size());
 }
 
 TEST(Table, RefusesARowOfAnotherWidth) {
