@@ -28,7 +28,7 @@ std::string csv_of(const Table& table);
 /// One line of CSV with its line feed.
 std::string csv_of(const std::vector<Cell>& row);
 
-/// What an experiment is asked for.
+/// How an experiment runs.
 struct Request {
   bool quick = false;  ///< a small version, in under a minute
   std::uint64_t seed = 1;
