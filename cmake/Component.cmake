@@ -8,8 +8,8 @@ function(supple_add_component name)
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/supple ${PROJECT_SOURCE_DIR}/libs)
   target_link_libraries(supple_${name} PUBLIC supple PRIVATE $<BUILD_INTERFACE:supple_compile_options>)
-  # The viewer has other options. Where a component enables C, CMake names the files of that compiler.
-  if(name MATCHES "^(files|recording|viewer)$")
+  # Some have other options, and where a component enables C, CMake names the files of that compiler.
+  if(name MATCHES "^(files|formats|recording|viewer)$")
     supple_compile_together(supple_${name})
   else()
     supple_compile_together(supple_${name} REUSE_FROM supple_files)

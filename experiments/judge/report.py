@@ -352,7 +352,7 @@ def name_of(folder):
 
 
 def html_of(tables, name, found):
-    shown = [each for each in tables.paths if not each.endswith("_claims") and (name != "figures" or each in ("figures_1", "figures_2", "figures_4"))]
+    shown = [each for each in tables.paths if not each.endswith("_claims")]
     head = tables.head(shown[0])
     parts = ["<h2>What holds</h2>", f"<p>Numbers with their {100 - 100 * LEVEL:.0f} % intervals. Where many are judged together, their intervals are wider "
              "(Holm). A verdict is undecided when the interval has the limit in it.</p>"] if found else []

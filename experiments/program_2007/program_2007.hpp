@@ -14,11 +14,9 @@ Results run_ablation(const Request& request);
 /// small program of this experiment, compared with the hierarchy that the paper chose.
 Results run_trials(const Request& request);
 
-/// The data of the paper's five figures, from the method of 2007 on table1_9: the modules and their times
-/// (1), the regions of the scene octree (2, 3), the pairs of nodes of a collision (4) and their boxes (5).
-/// Also writes what has no table into the folder: the meshes (figures.obj), the positions of each frame as
-/// floats (figures_positions.f32: frames × vertices × 3), the regions and the spheres of each frame
-/// (figures_regions.csv, figures_spheres.csv), and the boxes of the colliding leaves (figures_boxes.csv).
+/// The data of the paper's figures, from the method of 2007 on table1_9: the modules and their times (1), and
+/// at a collision the regions of the scene octree (2) and the pairs of nodes (4). The heads of the tables say
+/// which frames, objects and place figures 3 and 5 show.
 Results run_figures(const Request& request);
 
 }  // namespace supple::experiments

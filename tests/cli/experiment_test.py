@@ -10,7 +10,7 @@ import time
 import unittest
 import xml.etree.ElementTree
 
-from program import PROGRAM, ROOT, ProgramTest, run
+from program import CAN_RENDER, PROGRAM, ROOT, ProgramTest, run
 
 # The report needs matplotlib and scipy; the program looks for Debian's Python, too.
 PYTHON = next((python for python in ("python3", "/usr/bin/python3")
@@ -179,7 +179,8 @@ class Experiment(ProgramTest):
         self.assertEqual([len(sizes) for sizes in quantities.values()], 6 * [4])
         self.assertEqual({row["arity"] for row in self.rows("paper/arity/arity_objects.csv")}, {"2", "4", "8"})
         self.check_claims()
-        self.check_paper()
+        if CAN_RENDER:
+            self.check_paper()
 
     def check_claims(self):
         """Each claim has a name of its own, a verdict, and numbers with what they are."""

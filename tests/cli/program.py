@@ -3,12 +3,16 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("SUPPLE_PROGRAM", str(ROOT / "build/release/bin/supple"))
+HAS_VIEWER = bool(os.environ.get("SUPPLE_VIEWER_MODULE", ""))
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+CAN_RENDER = HAS_VIEWER and (bool(os.environ.get("SUPPLE_CHROMIUM")) or any(map(shutil.which, BROWSERS)))
 
 
 class Result:

@@ -4,7 +4,6 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import signal
 import struct
 import subprocess
@@ -13,11 +12,7 @@ import unittest
 import xml.etree.ElementTree
 import zlib
 
-from program import PROGRAM, TRIANGLE, UPRIGHT, ProgramTest
-
-HAS_VIEWER = bool(os.environ.get("SUPPLE_VIEWER_MODULE", ""))
-BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-HAS_BROWSER = bool(os.environ.get("SUPPLE_CHROMIUM")) or any(map(shutil.which, BROWSERS))
+from program import CAN_RENDER, HAS_VIEWER, PROGRAM, TRIANGLE, UPRIGHT, ProgramTest
 
 BODY = """
 [scene]
@@ -130,7 +125,7 @@ class RenderErrors(ProgramTest):
         )
 
 
-@unittest.skipUnless(HAS_VIEWER and HAS_BROWSER, "there is no viewer or no Chromium")
+@unittest.skipUnless(CAN_RENDER, "there is no viewer or no Chromium")
 class Render(ProgramTest):
     def setUp(self):
         super().setUp()
