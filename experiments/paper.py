@@ -78,7 +78,7 @@ def draw(program, output, head, name, volume, view):
         frames = {int(path.stem): Image.open(path).convert("RGB") for path in sorted(pathlib.Path(folder).glob("*.png"))}
         frames[int(head["step"])].save(output / f"{name}.png", optimize=True)
         first, *others = frames.values()
-        first.save(output / f"{name}.webp", save_all=True, append_images=others, duration=60, loop=0, quality=60, method=4)
+        first.save(output / f"{name}.webp", save_all=True, append_images=others, duration=60, loop=0, quality=40, method=4)
 
 
 def draw_figures(program, output):
