@@ -26,7 +26,8 @@ struct Experiment {
 
 constexpr std::array all_experiments{
     Experiment{"table1", nullptr,
-               "The paper's Table 1: collisions of 3, 6, 9 and more objects, with boxes and with spheres."},
+               "The paper's Table 1: collisions of 3, 6, 9 and more objects, with boxes and with spheres. "
+               "Takes hours."},
     Experiment{"scaling", run_scaling,
                "Time against the number of objects, up to 1,000,000, and of vertices."},
     Experiment{"arity", run_arity, "Trees of two, four and eight children."},
@@ -38,8 +39,7 @@ constexpr std::array all_experiments{
     Experiment{"trials", run_trials, "The methods that the paper tried and rejected."},
     Experiment{"sensitivity", nullptr,
                "Whether other scenes, speeds or levels give the numbers of the paper. Takes hours."},
-    Experiment{"figures", run_figures,
-               "The paper's figures: modules, regions, spheres, pairs of nodes and their boxes."}};
+    Experiment{"figures", run_figures, "Data of the paper's figures: modules, regions and pairs of nodes."}};
 
 Table1Options table1_options(const ExperimentOptions& options) {
   Table1Options table1 = default_table1_options(options.quick);

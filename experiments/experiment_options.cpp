@@ -16,14 +16,11 @@ namespace supple::experiments {
 namespace {
 
 std::string footer() {
-  std::string text = "Experiments:\n";
-  for (const auto& [name, help] : experiments()) text += fmt::format("  {}\n      {}\n", name, help);
-  return text + R"(
-Examples:
-  supple experiment table1 --quick
-      A small version, in under a minute.
-  supple experiment table1 --output table1
-      Five runs of ten simulated minutes for each scene. Writes CSV files and table1/table1.html.
+  std::string text = "Examples:\n";
+  for (const auto& [name, help] : experiments())
+    text += fmt::format("  supple experiment {}\n      {}\n", name, help);
+  return text + R"(  supple experiment table1 --quick --output quick
+      A small version in under a minute, which writes CSV files and quick/table1.html.
   supple experiment table1 --objects 3,6,9 --seconds 0 --program-clock 600 --output clock
       Counts the collisions found in ten minutes of the whole program, as the paper does. Takes hours. Ctrl-C
       stops it; the same command with --resume goes on.
