@@ -223,9 +223,8 @@ struct Description<ComparisonOptions> {
                                       .member = &Options::sphere_fit,
                                       .doc = "How spheres are fitted: around the middle of the box up to "
                                              "the farthest vertex (vertices), as small as possible "
-                                             "(minimal), around a point of the medial axis (medial), or "
-                                             "from the box by the paper's eq. 3 and 4, which misses "
-                                             "contacts (box)"});
+                                             "(minimal), on the medial axis (medial), or from the box by "
+                                             "the paper's eq. 3 and 4, which misses contacts (box)"});
     visitor(Field<Options, bool>{
         .name = "colliding_vertices",
         .member = &Options::colliding_vertices,
