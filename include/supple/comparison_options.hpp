@@ -28,6 +28,9 @@ enum class SphereFit : std::uint8_t {
   /// The smallest sphere around the vertices, up to rounding: often smaller, never larger than that of
   /// `vertices`. Conservative. The refit takes longer.
   minimal,
+  /// Around a point of the medial axis, chosen at rest so that the sphere is smallest, which moves with a
+  /// triangle, or as `vertices` where that is smaller. Conservative. Builds and refits take longer.
+  medial,
   /// Center and radius from the longest side L of the box (the paper's eq. 3 and 4). The sphere does not
   /// enclose the corners of the box, so `detect` misses collisions. Only to repeat the paper's experiment.
   box,

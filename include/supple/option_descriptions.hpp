@@ -16,7 +16,7 @@ inline constexpr std::array words<BoundingVolume>{"aabb", "sphere", "obb", "kdop
 template <>
 inline constexpr std::array words<ObjectOctreeBuild>{"balanced", "regular", "bottom_up"};
 template <>
-inline constexpr std::array words<SphereFit>{"vertices", "minimal", "box"};
+inline constexpr std::array words<SphereFit>{"vertices", "minimal", "medial", "box"};
 template <>
 inline constexpr std::array words<BroadPhaseMethod>{"automatic", "octree", "grid",
                                                     "sweep",     "brute",  "sweep3"};
@@ -223,8 +223,8 @@ struct Description<ComparisonOptions> {
                                       .member = &Options::sphere_fit,
                                       .doc = "How spheres are fitted: around the middle of the box up to "
                                              "the farthest vertex (vertices), as small as possible "
-                                             "(minimal), or from the box by the paper's eq. 3 and 4, which "
-                                             "misses contacts (box)"});
+                                             "(minimal), on the medial axis (medial), or from the box by "
+                                             "the paper's eq. 3 and 4, which misses contacts (box)"});
     visitor(Field<Options, bool>{
         .name = "colliding_vertices",
         .member = &Options::colliding_vertices,

@@ -6,10 +6,11 @@
 namespace supple {
 namespace {
 
-std::unique_ptr<NodeVolumes> make_node_volumes(BoundingVolume kind, SphereFit fit, std::size_t nodes) {
-  if (kind == BoundingVolume::sphere) return make_spheres(fit, nodes);
-  if (kind == BoundingVolume::obb) return make_oriented_boxes(nodes);
-  return make_kdops(kind, nodes);
+std::unique_ptr<NodeVolumes> make_node_volumes(BoundingVolume kind, SphereFit fit, const ObjectOctree& octree,
+                                               const PositionsView& rest_positions) {
+  if (kind == BoundingVolume::sphere) return make_spheres(fit, octree, rest_positions);
+  const std::size_t nodes = octree.nodes().size();
+  return kind == BoundingVolume::obb ? make_oriented_boxes(nodes) : make_kdops(kind, nodes);
 }
 
 OctreeTopology build_other_octree(const PositionsView& positions, std::span<const Triangle> triangles,

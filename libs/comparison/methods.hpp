@@ -49,9 +49,16 @@ OctreeTopology build_regular_octree(std::span<const Vec3d> centers, const Object
 /// the result encloses all vertices and is never larger than the first, even when rounding ends the search
 /// early.
 ///
-/// Both fits search the farthest vertex below a node top-down and skip children whose sphere ends before the
-/// farthest vertex so far. A refit takes O(n · levels).
-std::unique_ptr<NodeVolumes> make_spheres(SphereFit fit, std::size_t nodes);
+/// `SphereFit::medial` tries, for each node at rest, the middle of its box and up to 32 points of the medial
+/// axis (`medial_depths`), and keeps the centre with the smallest sphere, as Bradshaw and O'Sullivan,
+/// "Adaptive medial-axis approximation for sphere-tree construction", 2004, place spheres; here, each node
+/// has one. About O(n log n), once. Each refit moves the centre with its triangle and takes the smaller one
+/// of the spheres around it and around the middle of the box.
+///
+/// The three fits search the farthest vertex below a node top-down and skip children whose sphere ends before
+/// the farthest vertex so far. A refit takes O(n · levels).
+std::unique_ptr<NodeVolumes> make_spheres(SphereFit fit, const ObjectOctree& octree,
+                                          const PositionsView& rest_positions);
 
 /// Oriented boxes, rounded outward. Their axes are the principal axes of the surface, as in Gottschalk, Lin
 /// and Manocha, "OBBTree", 1996; the area as weight makes them independent of the tessellation. They are

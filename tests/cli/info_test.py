@@ -112,7 +112,8 @@ class Info(ProgramTest):
         self.write("scene.toml", '[[object]]\nmodel = "human"\n')
         def cost(fit):
             return self.info("scene.toml", "--bounding-volume", "sphere", "--sphere-fit", fit)[0]["octree"]["cost"]
-        self.assertLess(cost("minimal"), cost("vertices"))
+        self.assertLess(cost("minimal"), cost("medial"))
+        self.assertLess(cost("medial"), cost("vertices"))
 
     def test_text(self):
         self.write("a.obj", TRIANGLE)

@@ -37,7 +37,8 @@ using EnclosingVolume = std::pair<OptionWord<BoundingVolume>, OptionWord<SphereF
 
 /// The volumes with the fits that enclose all triangles.
 inline std::vector<EnclosingVolume> all_enclosing_volumes() {
-  std::vector<EnclosingVolume> volumes{{BoundingVolume::sphere, SphereFit::minimal}};
+  std::vector<EnclosingVolume> volumes{{BoundingVolume::sphere, SphereFit::minimal},
+                                       {BoundingVolume::sphere, SphereFit::medial}};
   for (const BoundingVolume volume : all_bounding_volumes) volumes.emplace_back(volume, SphereFit::vertices);
   return volumes;
 }

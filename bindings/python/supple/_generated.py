@@ -21,7 +21,9 @@ class SphereFit(enum.IntEnum):
     "The center of the node's box; the radius reaches the farthest vertex (the paper's eq. 5). Conservative."
     minimal = 1
     'The smallest sphere around the vertices, up to rounding: often smaller, never larger than that of `vertices`. Conservative. The refit takes longer.'
-    box = 2
+    medial = 2
+    'Around a point of the medial axis, chosen at rest so that the sphere is smallest, which moves with a triangle, or as `vertices` where that is smaller. Conservative. Builds and refits take longer.'
+    box = 3
     "Center and radius from the longest side L of the box (the paper's eq. 3 and 4). The sphere does not enclose the corners of the box, so `detect` misses collisions. Only to repeat the paper's experiment."
 
 

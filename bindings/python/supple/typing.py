@@ -103,8 +103,8 @@ class SceneOctreeOptions(TypedDict, total=False):
 class ComparisonOptions(TypedDict, total=False):
     'Options as keywords.'
 
-    sphere_fit: SphereFit | Literal['vertices', 'minimal', 'box']
-    "How spheres are fitted: around the middle of the box up to the farthest vertex (vertices), as small as possible (minimal), or from the box by the paper's eq. 3 and 4, which misses contacts (box)"
+    sphere_fit: SphereFit | Literal['vertices', 'minimal', 'medial', 'box']
+    "How spheres are fitted: around the middle of the box up to the farthest vertex (vertices), as small as possible (minimal), on the medial axis (medial), or from the box by the paper's eq. 3 and 4, which misses contacts (box)"
     colliding_vertices: bool | np.bool_
     "Also report the paper's output: the vertices in the colliding leaves of both octrees"
     descent: Descent | Literal['both_sides', 'one_side_first']

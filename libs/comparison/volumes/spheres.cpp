@@ -7,10 +7,13 @@
 #include <limits>
 #include <optional>
 
+#include "comparison/volumes/medial_axis.hpp"
 #include "comparison/volumes/volume_kernels.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/sphere.hpp"
 #include "geometry/vector.hpp"
+#include "octree/volumes/box_kernels.hpp"
+#include "world/object/resting_shape.hpp"
 
 namespace supple {
 namespace {
@@ -25,6 +28,8 @@ constexpr int most_pivots = 32;
 constexpr double squared_tolerance = 1 + 0x1p-22;
 /// Covers the rounding of spheres around up to five points.
 constexpr double squared_slack = 1 + 0x1p-36;
+/// Medial centres that are tried for a sphere.
+constexpr std::uint32_t most_candidates = 32;
 
 /// The paper's equations 3 and 4: the sphere inside the cube that has the lower corner and the longest side
 /// of the box.
@@ -46,33 +51,34 @@ Vec3f middle_of(const Aabb& box) {
   return middle;
 }
 
-/// Finds the vertex that is farthest from a centre.
+/// The point of the box that is nearest to a medial centre, because no vertex of the box is farther from it.
+/// Coordinates that are not finite become those of the middle.
+Vec3f nearest_in(const Aabb& box, const Vec3d& medial_center, Vec3f middle) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double nearest = std::clamp(medial_center[axis], double{box.min[axis]}, double{box.max[axis]});
+    if (std::abs(nearest) <= std::numeric_limits<float>::max()) middle[axis] = static_cast<float>(nearest);
+  }
+  return middle;
+}
+
+/// Finds the vertex below a child, or of the whole object, that is farthest from a centre.
 class FarthestVertex {
  public:
-  FarthestVertex(const RefittedOctree& octree, std::span<const ChildSpheres> spheres)
-      : octree_(octree), spheres_(spheres) {}
+  FarthestVertex(const RefittedOctree& octree, std::span<const ChildSpheres> spheres, std::uint32_t n,
+                 int child)
+      : octree_(octree), spheres_(spheres), n_(n), child_(child) {}
 
-  void start(const Vec3f& center) {
+  void search_from(const Vec3f& center) {
     center_ = center;
     from_ = in_double(center);
     squared_distance_ = 0;
-  }
-
-  /// Without spheres of nodes that skip vertices, one loop reads each position once and in order.
-  void search_object() {
-    if (octree_.are_nodes_current)
+    if (n_ < octree_.nodes.size())
+      search_child(n_, child_);
+    else if (octree_.are_nodes_current)
       search_node(0);
-    else
+    else  // no sphere skips vertices: one loop reads each position once and in order
       for_each_used_vertex(octree_.vertices, octree_.unused_vertices,
                            [&](std::uint32_t vertex) { consider(vertex); });
-  }
-
-  void search_child(std::uint32_t n, int child) {
-    const OctreeNode& node = octree_.nodes[n];
-    if (node.is_inner(child) && octree_.are_nodes_current)
-      search_node(node.child_node(child));
-    else
-      for_each_vertex(octree_, n, child, [&](std::uint32_t vertex) { consider(vertex); });
   }
 
   Vec3d position() const { return position_; }
@@ -86,6 +92,14 @@ class FarthestVertex {
   }
 
  private:
+  void search_child(std::uint32_t n, int child) {
+    const OctreeNode& node = octree_.nodes[n];
+    if (node.is_inner(child) && octree_.are_nodes_current)
+      search_node(node.child_node(child));
+    else
+      for_each_vertex(octree_, n, child, [&](std::uint32_t vertex) { consider(vertex); });
+  }
+
   void search_node(std::uint32_t n) {
     struct Reach {
       double most;  ///< bound of the distance
@@ -118,6 +132,8 @@ class FarthestVertex {
 
   const RefittedOctree& octree_;
   std::span<const ChildSpheres> spheres_;
+  std::uint32_t n_;
+  int child_;
   Vec3f center_{};
   Vec3d from_{}, position_{};
   double squared_distance_ = 0;
@@ -179,11 +195,9 @@ std::optional<Ball> extended_ball(Support& support, const Vec3d& point) {
   return smallest;
 }
 
-/// `farthest` starts with the vertex farthest from the middle of the box, and `search(farthest)` visits the
-/// vertices to enclose. Points are relative to the middle of the box, so that
-/// an object far from the origin loses no bits.
-template <class Search>
-BoundingSphere minimal_sphere(FarthestVertex& farthest, const Vec3f& middle, const Search& search) {
+/// `farthest` starts with the vertex farthest from the middle of the box. Points are relative to the middle
+/// of the box, so that an object far from the origin loses no bits.
+BoundingSphere minimal_sphere(FarthestVertex& farthest, const Vec3f& middle) {
   BoundingSphere smallest = farthest.sphere();
   if (farthest.squared_distance() == 0) return smallest;
   Support support;
@@ -195,8 +209,7 @@ BoundingSphere minimal_sphere(FarthestVertex& farthest, const Vec3f& middle, con
     Vec3f center;
     for (int axis = 0; axis < 3; ++axis)
       center[axis] = static_cast<float>(double{middle[axis]} + ball->center[axis]);
-    farthest.start(center);
-    search(farthest);
+    farthest.search_from(center);
     const BoundingSphere sphere = farthest.sphere();
     if (sphere.radius < smallest.radius) smallest = sphere;
     if (farthest.squared_distance() <= squared_radius * squared_tolerance) break;
@@ -204,35 +217,29 @@ BoundingSphere minimal_sphere(FarthestVertex& farthest, const Vec3f& middle, con
   return smallest;
 }
 
-template <class Search>
-BoundingSphere fitted_sphere(SphereFit fit, FarthestVertex farthest, const Aabb& box, const Search& search) {
-  if (box.empty()) return {};
-  if (fit == SphereFit::box) return sphere_from_box(box);
-  const Vec3f middle = middle_of(box);
-  farthest.start(middle);
-  search(farthest);
-  return fit == SphereFit::minimal ? minimal_sphere(farthest, middle, search) : farthest.sphere();
+auto& at(auto& of_children, std::uint32_t n, int child) {
+  return of_children[n][static_cast<std::size_t>(child)];
 }
 
 class Spheres final : public NodeVolumes {
  public:
-  Spheres(SphereFit fit, std::size_t nodes)
-      : NodeVolumes(BoundingVolume::sphere, nodes), fit_(fit), spheres_(nodes) {}
+  Spheres(SphereFit fit, const ObjectOctree& octree, const PositionsView& rest_positions)
+      : NodeVolumes(BoundingVolume::sphere, octree.nodes().size()),
+        fit_(fit),
+        spheres_(octree.nodes().size() + 1) {
+    if (fit == SphereFit::medial && !octree.nodes().empty()) choose_centers(octree, rest_positions);
+  }
 
   /// Not `refit_bottom_up`: a sphere is fitted to the vertices below, because the union of spheres is larger.
   void refit(const RefittedOctree& octree, std::uint32_t begin, std::uint32_t end) override {
     for (std::uint32_t n = begin; n < end; ++n) {
-      for (int child = 0; child < node_width; ++child) {
-        spheres_[n][static_cast<std::size_t>(child)] =
-            fitted_sphere(fit_, FarthestVertex(octree, spheres_), child_box(octree.boxes[n], child),
-                          [&](FarthestVertex& farthest) { farthest.search_child(n, child); });
-      }
+      for (int child = 0; child < node_width; ++child)
+        at(spheres_, n, child) = fitted_sphere(octree, n, child, child_box(octree.boxes[n], child));
     }
   }
 
   void refit_object(const RefittedOctree& octree, const Aabb& box) override {
-    object_sphere_ = fitted_sphere(fit_, FarthestVertex(octree, spheres_), box,
-                                   [](FarthestVertex& farthest) { farthest.search_object(); });
+    at(spheres_, object(), 0) = fitted_sphere(octree, object(), 0, box);
   }
 
   void clear_apart(std::span<const NodePair> pairs, const NodeVolumes& b, const RelativePlacement& placement,
@@ -251,22 +258,80 @@ class Spheres final : public NodeVolumes {
     }
   }
 
-  BoundingSphere sphere(std::uint32_t node, int child) const override {
-    return node == object() ? object_sphere_ : spheres_[node][static_cast<std::size_t>(child)];
+  BoundingSphere sphere(std::uint32_t node, int child) const override { return at(spheres_, node, child); }
+
+  std::size_t bytes() const override {
+    return spheres_.capacity() * sizeof(ChildSpheres) + centers_.capacity() * sizeof(ChildCenters);
   }
 
-  std::size_t bytes() const override { return spheres_.capacity() * sizeof(ChildSpheres); }
-
  private:
+  using ChildCenters = std::array<MedialCenter, node_width>;
+
+  BoundingSphere fitted_sphere(const RefittedOctree& octree, std::uint32_t n, int child,
+                               const Aabb& box) const {
+    if (box.empty()) return {};
+    if (fit_ == SphereFit::box) return sphere_from_box(box);
+    const Vec3f middle = middle_of(box);
+    FarthestVertex farthest(octree, spheres_, n, child);
+    farthest.search_from(middle);
+    if (fit_ == SphereFit::minimal) return minimal_sphere(farthest, middle);
+    const BoundingSphere sphere = farthest.sphere();
+    if (centers_.empty()) return sphere;
+    const Vec3f medial = nearest_in(box, at(centers_, n, child).position(octree), middle);
+    if (medial == middle) return sphere;
+    farthest.search_from(medial);
+    return farthest.sphere().radius < sphere.radius ? farthest.sphere() : sphere;
+  }
+
+  /// For each sphere of the rest pose, tries centres on the medial axis below evenly spaced triangles.
+  void choose_centers(const ObjectOctree& octree, const PositionsView& rest_positions) {
+    VertexBuffer vertices;
+    vertices.assign(rest_positions, Parallel(1));
+    std::vector<std::uint8_t> inert;
+    const bool some_inert = mark_inert(octree, vertices, ~std::uint32_t{0}, inert);
+    std::vector<ChildBoxes> boxes(octree.nodes().size());
+    for (std::uint32_t n = object(); n-- > 0;)
+      refit_boxes(octree.nodes().data(), boxes.data(), arrays_of(octree.triangles(), vertices, inert),
+                  octree.leaf_vertices(), n, n + 1);
+    if (!some_inert) inert.clear();  // visits of vertices are faster
+    const RefittedOctree resting{
+        octree.nodes(), boxes.data(), octree.triangles(), octree.leaf_vertices(), vertices, inert, {}};
+    const std::vector<double> depths = medial_depths(resting);
+    centers_.resize(spheres_.size());
+    const auto choose = [&](std::uint32_t n, int child, const Aabb& box, std::uint32_t begin,
+                            std::uint32_t end) {
+      BoundingSphere smallest = fitted_sphere(resting, n, child, box);
+      MedialCenter& center = at(centers_, n, child);
+      MedialCenter best = center;
+      for (std::uint32_t t = begin; t < end; t += (end - begin - 1) / most_candidates + 1) {
+        center = {t, depths[t]};
+        const BoundingSphere sphere = fitted_sphere(resting, n, child, box);
+        if (!(sphere.radius < smallest.radius)) continue;
+        smallest = sphere;
+        best = center;
+      }
+      at(spheres_, n, child) = smallest;
+      center = best;
+    };
+    for (std::uint32_t n = object(); n-- > 0;) {
+      const OctreeNode& node = octree.nodes()[n];
+      for (int child = 0; child < node.child_count; ++child)
+        choose(n, child, child_box(boxes[n], child), node.first_triangle[child],
+               node.first_triangle[child + 1]);
+    }
+    choose(object(), 0, enclosing_box(boxes[0]), 0, static_cast<std::uint32_t>(depths.size()));
+  }
+
   SphereFit fit_;
   std::vector<ChildSpheres> spheres_;
-  BoundingSphere object_sphere_;
+  std::vector<ChildCenters> centers_;  // for `SphereFit::medial`
 };
 
 }  // namespace
 
-std::unique_ptr<NodeVolumes> make_spheres(SphereFit fit, std::size_t nodes) {
-  return std::make_unique<Spheres>(fit, nodes);
+std::unique_ptr<NodeVolumes> make_spheres(SphereFit fit, const ObjectOctree& octree,
+                                          const PositionsView& rest_positions) {
+  return std::make_unique<Spheres>(fit, octree, rest_positions);
 }
 
 }  // namespace supple

@@ -30,7 +30,8 @@ class World;
 /// Methods that only serve comparisons with the defaults. They are in the library supple::comparison.
 struct ComparisonMethods {
   /// For all kinds but boxes.
-  std::unique_ptr<NodeVolumes> (*node_volumes)(BoundingVolume kind, SphereFit fit, std::size_t nodes);
+  std::unique_ptr<NodeVolumes> (*node_volumes)(BoundingVolume kind, SphereFit fit, const ObjectOctree& octree,
+                                               const PositionsView& rest_positions);
   /// For all builds but the balanced one.
   OctreeTopology (*octree)(const PositionsView& positions, std::span<const Triangle> triangles,
                            std::span<const Vec3d> centers, const ObjectOctreeOptions& options);

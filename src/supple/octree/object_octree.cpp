@@ -71,10 +71,6 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   cell_numbers_ = std::move(topology.numbers);
   triangle_ids_ = std::move(topology.order);
   boxes_.resize(nodes_.size());
-  if (bounding_volume != BoundingVolume::aabb) {
-    volumes_ = comparison_methods(std::string("the bounding volume ") + word_of(bounding_volume))
-                   .node_volumes(bounding_volume, sphere_fit, nodes_.size());
-  }
   triangles_.resize(triangles.size());
   triangle_order_.resize(triangles.size());
   parallel.for_ranges(triangles.size(), triangles_of_a_task,
@@ -85,6 +81,9 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
                         }
                       });
   list_leaf_vertices(parallel);
+  if (bounding_volume == BoundingVolume::aabb) return;
+  volumes_ = comparison_methods(std::string("the bounding volume ") + word_of(bounding_volume))
+                 .node_volumes(bounding_volume, sphere_fit, *this, rest_positions);
 }
 
 ObjectOctree ObjectOctree::rebuilt(const PositionsView& positions, const Parallel& parallel) const {

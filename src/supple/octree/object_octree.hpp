@@ -35,7 +35,7 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 /// less than the nodes that would separate them.
 ///
 /// Memory besides the positions: 272 bytes per node, 23 per triangle, 4 for each vertex of each leaf; with
-/// spheres 128 more per node, with oriented boxes 592, with k-DOPs 32 (k - 6).
+/// spheres 128 more per node (`SphereFit::medial`: 256), with oriented boxes 592, with k-DOPs 32 (k - 6).
 class ObjectOctree {
  public:
   /// O(n log n). Triangles with a vertex that is not finite count as the lower corner of the others.

@@ -27,7 +27,7 @@ namespace supple::method_of_2007_test {
 std::vector<SceneOptions> lazy_options() {
   std::vector<SceneOptions> all;
   for (const BoundingVolume volume : {BoundingVolume::aabb, BoundingVolume::sphere}) {
-    for (const SphereFit fit : {SphereFit::vertices, SphereFit::minimal}) {
+    for (const SphereFit fit : {SphereFit::vertices, SphereFit::minimal, SphereFit::medial}) {
       for (const Descent descent : {Descent::both_sides, Descent::one_side_first}) {
         if (volume == BoundingVolume::aabb && fit != SphereFit::vertices) continue;
         SceneOptions& options = all.emplace_back();

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -86,7 +87,8 @@ TEST_P(OctreeLives, StayValid) {
 }
 
 std::string volume_name(const testing::TestParamInfo<OctreeLives::ParamType>& info) {
-  return name_of(info.param.first) + (info.param.second == SphereFit::minimal ? "Minimal" : "");
+  constexpr std::array fits{"", "Minimal", "Medial"};
+  return name_of(info.param.first) + fits[static_cast<std::size_t>(info.param.second.value)];
 }
 
 INSTANTIATE_TEST_SUITE_P(Volumes, OctreeLives, testing::ValuesIn(all_enclosing_volumes()), volume_name);

@@ -41,6 +41,7 @@ TEST(RefitMoved, HasTheBitsOfAFullRefit) {
     for (const auto& [fit, build, arity] : {std::tuple{SphereFit::vertices, ObjectOctreeBuild::balanced, 8u},
                                             {SphereFit::minimal, ObjectOctreeBuild::bottom_up, 8u},
                                             {SphereFit::minimal, ObjectOctreeBuild::regular, 2u},
+                                            {SphereFit::medial, ObjectOctreeBuild::balanced, 8u},
                                             {SphereFit::box, ObjectOctreeBuild::regular, 4u}}) {
       TriangleMesh mesh = make_model("human");
       mesh.positions.push_back({0, 0, 0});  // in no triangle
