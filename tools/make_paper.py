@@ -10,8 +10,8 @@ functions:
 
   verdict(NAME)           the verdict on a claim, with its numbers when these are few
   word(NAME)              only the verdict
-  number(NAME, CASE, HOLDS)  the number of a claim in a case and its interval; fails if HOLDS is given and the tables
-                          do not decide so
+  number(NAME, CASE, OUTCOME, INVERSE)  the number of a claim in a case, or 1 divided by it, and its interval; fails if
+                          OUTCOME is given, "holds", "fails" or "undecided", and the tables decide otherwise
   listing(TABLE)          a table of judge/report.py: rates, ratios, averages, strains or changes
   head(TABLE, KEY)        from the comments of TABLE.csv: commit, processor, command
   claims_table()          all claims of the paper in its order, then our own
@@ -58,16 +58,15 @@ class Results:
     def word(self, name):
         return f"**{self.claims[name].verdict}**" if name in self.claims else "**Not measured**"
 
-    def number(self, name, case="", holds=None):
+    def number(self, name, case="", outcome="", inverse=False):
         found = [test for test in self.claims[name].tests if test.when == case]
         if not found:
             raise KeyError(f"{name} has no case {case!r}, but {[test.when for test in self.claims[name].tests]}")
-        if holds is not None and any(test.outcome() != holds for test in found):
-            raise ValueError(f"the template says that {name} {'holds' if holds else 'does not hold'} in the case {case!r}; the tables do not")
-        number, level = found[0].number, found[0].level
-        low, high = number.interval(level)
-        interval = f" ({rounded(low)} to {rounded(high)})" if number.error else ""
-        return f"{rounded(number.mean)}{interval}"
+        if outcome and any(test.outcome() != {"holds": True, "fails": False, "undecided": None}[outcome] for test in found):
+            raise ValueError(f"the template says {outcome!r} of {name} in the case {case!r}; the tables decide otherwise")
+        number, (low, high) = found[0].number, found[0].number.interval(found[0].level)
+        mean, low, high = (1 / number.mean, 1 / high, 1 / low) if inverse else (number.mean, low, high)
+        return rounded(mean) + (f" ({rounded(low)} to {rounded(high)})" if number.error else "")
 
     def listing(self, name):
         heading, rows, _, _ = getattr(report, name)(self.tables)
@@ -125,7 +124,7 @@ def main():
     if check and stale:
         sys.exit(f"{', '.join(stale)}: not what tools/make_paper.py makes of experiments/templates and the results; run it")
     if not check:
-        report.draw_what_holds(results.tables, FIGURE)
+        report.draw_what_holds(results.tables, results.claims, FIGURE)
 
 
 if __name__ == "__main__":

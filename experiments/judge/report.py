@@ -292,35 +292,36 @@ LISTINGS = {"table1": (rates, ratios, averages), "claims": (strains,), "ablation
 # --- the figure of what holds ---
 
 
-def draw_what_holds(tables, path):
-    """Spheres for each box, and brute force against the octree of 2007, by the number of objects."""
+def draw_what_holds(tables, judged, path):
+    """Spheres for each box, and brute force against the octree, by the number of objects; intervals as they are judged."""
     import matplotlib
     from matplotlib.figure import Figure
     matplotlib.rcParams.update({"svg.hashsalt": "what_holds", "svg.fonttype": "none", "font.size": 11, "axes.spines.top": False, "axes.spines.right": False})
-    figure = Figure(figsize=(11, 4.2), layout="constrained")
+    figure = Figure(figsize=(11, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2)
-    for axes, title in ((left, "Collisions with spheres for each with boxes"), (right, "Time of brute force for each of the octree")):
+
+    def draw(axes, claim, label, color, shift=1.0):
+        lines = [(int(re.sub(r"\D", "", test.when)), test.number.mean, *test.number.interval(test.level)) for test in judged[claim].tests
+                 if math.isfinite(test.number.error)]
+        sizes, means, lows, highs = np.array(lines).T
+        axes.errorbar(sizes * shift, means, (means - lows, highs - means), marker="o", markersize=4, capsize=2.5, color=color, label=label)
+
+    for claim, clock, color, shift in zip(("simulated", "detection", "program"), CLOCKS, COLORS, (0.97, 1, 1.03)):
+        draw(left, f"more-with-boxes-{claim}", f"we, {clock}", color, shift)
+    left.plot([3, 6, 9], [table1.paper_ratio(objects, "broad").mean for objects in (3, 6, 9)], linestyle="", marker="s", color="black", label="the paper")
+    draw(right, "better-than-brute", "plain programs of 2007's kind", COLORS[4])
+    draw(right, "better-than-brute-many", "Supple today", COLORS[6])
+    for axes, title in ((left, "Collisions found: spheres ÷ boxes"), (right, "Time: brute force ÷ octree")):
         axes.set_title(title, loc="left", fontsize=12)
         axes.set_xlabel("objects")
         axes.axhline(1, color="#888888", linewidth=0.8)
         axes.grid(color="#ddd", linewidth=0.7)
-    for clock, color in zip(CLOCKS, COLORS):
-        points = [(objects, table1.ratio(tables, f"table1_{objects}", "broad", clock)) for objects in table1.mixed(tables, clock)]
-        points = [(objects, number) for objects, number in points if math.isfinite(number.error)]
-        lines = [(objects, number.mean, *number.interval()) for objects, number in points]
-        left.plot([line[0] for line in lines], [line[1] for line in lines], marker="o", markersize=4, color=color, label=clock)
-        left.fill_between([line[0] for line in lines], [line[2] for line in lines], [line[3] for line in lines], color=color, alpha=0.18, linewidth=0)
-    left.plot([3, 6, 9], [table1.paper_ratio(objects, "broad").mean for objects in (3, 6, 9)], linestyle="", marker="s", color="black", label="the paper")
-    for brute, octree, label, color in (("plain brute force", "plain octree", "programs of 2007's kind", COLORS[0]), ("brute force", "octree", "Supple today", COLORS[1])):
-        sizes = [boxes for boxes in claims.box_counts(tables, octree) if boxes in claims.box_counts(tables, brute)]
-        right.plot(sizes, [claims.step_ratio(tables, brute, octree, boxes).mean for boxes in sizes], marker="o", markersize=4, color=color, label=label)
+        axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
     pages.set_logarithmic(right.yaxis, 0.01, 1000)
     pages.set_logarithmic(right.xaxis, 3, 100_000)
     pages.set_logarithmic(left.xaxis, 3, 10_000)
-    left.set_xticks(sizes_of_left := table1.mixed(tables), sizes_of_left)
+    left.set_xticks(sizes := table1.mixed(tables), sizes)
     left.set_ylim(0, 1.6)
-    for axes in (left, right):
-        axes.legend(frameon=False)
     figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})
 
 
