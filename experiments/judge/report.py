@@ -294,10 +294,9 @@ LISTINGS = {"table1": (rates, ratios, averages), "claims": (strains,), "ablation
 
 def draw_what_holds(tables, judged, path):
     """Spheres for each box, and brute force against the octree, by the number of objects; intervals as they are judged."""
-    import matplotlib
-    from matplotlib.figure import Figure
+    import matplotlib.figure
     matplotlib.rcParams.update({"svg.hashsalt": "what_holds", "svg.fonttype": "none", "font.size": 11, "axes.spines.top": False, "axes.spines.right": False})
-    figure = Figure(figsize=(11, 4.6), layout="constrained")
+    figure = matplotlib.figure.Figure(figsize=(11, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2)
 
     def draw(axes, claim, label, color, shift=1.0):
