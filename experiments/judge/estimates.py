@@ -33,6 +33,10 @@ class Estimate:
             return self.mean * math.exp(-reach), self.mean * math.exp(min(reach, 700))
         return self.mean - reach, self.mean + reach
 
+    @property
+    def standard_error(self):
+        return self.mean * self.error if self.of_logarithm else self.error
+
     def chance(self, limit):
         """The probability of such a distance from the limit if the number were the limit; two-sided."""
         if self.error == 0 or not math.isfinite(self.error):
@@ -56,13 +60,12 @@ def mean_of(values):
 
 def ratio_of(a, b):
     """The geometric mean of a / b over rounds in which both were measured in turn."""
-    logarithms = np.log(np.maximum(a, SHORTEST) / np.maximum(b, SHORTEST))
-    of = mean_of(logarithms)
+    of = mean_of(np.log(np.maximum(a, SHORTEST) / np.maximum(b, SHORTEST)))
     return Estimate(math.exp(of.mean), of.error, of.freedom, of_logarithm=True)
 
 
 def ratio_of_sums(a, b):
-    """sum(a) / sum(b) of runs that saw the same motion, with the error of the jackknife (Tukey 1958)."""
+    """sum(a) / sum(b) of runs that saw the same motion, with the error of its logarithm by the jackknife (Tukey 1958)."""
     a, b = np.asarray(a, float), np.asarray(b, float)
     if b.sum() == 0:
         return Estimate(math.nan, math.inf, 1)
@@ -70,9 +73,11 @@ def ratio_of_sums(a, b):
     if len(a) < 2 or (b.sum() - b).min() <= 0:
         return Estimate(ratio, math.inf, 1)
     without = (a.sum() - a) / (b.sum() - b)
-    error = math.sqrt((len(a) - 1) / len(a) * ((without - without.mean()) ** 2).sum())
+    of_logarithm = without.min() > 0  # so that no interval of a positive ratio reaches below 0
+    numbers = np.log(without) if of_logarithm else without
+    error = math.sqrt((len(a) - 1) / len(a) * ((numbers - numbers.mean()) ** 2).sum())
     # Equal runs say nothing about others.
-    return Estimate(ratio, error or math.inf, len(a) - 1)
+    return Estimate(ratio, error if error > 1e-12 else math.inf, len(a) - 1, of_logarithm)
 
 
 def quotient(a, b):
@@ -106,12 +111,9 @@ class Test:
     when: str = ""
     level: float = LEVEL
 
-    def limits(self):
-        return [limit for limit in (self.low, self.high) if math.isfinite(limit)]
-
     def chance(self):
         """That of the limit which decides."""
-        chances = [self.number.chance(limit) for limit in self.limits()]
+        chances = [self.number.chance(limit) for limit in (self.low, self.high) if math.isfinite(limit)]
         return max(chances) if self.low <= self.number.mean <= self.high else min(chances)
 
     def outcome(self):
@@ -127,8 +129,7 @@ class Test:
 def set_levels(tests):
     """Gives each measured number its level by Holm's method."""
     measured = sorted((test for test in tests if test.number.error > 0), key=Test.chance)
-    level = LEVEL
-    is_rejecting = True
+    level, is_rejecting = LEVEL, True
     for rank, test in enumerate(measured):
         if is_rejecting:
             level = LEVEL / (len(measured) - rank)

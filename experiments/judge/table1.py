@@ -111,7 +111,7 @@ def _(tables):
         if not {3, 9} <= set(mixed(tables, clock)):
             continue
         few, many = (ratio(tables, f"table1_{objects}", "broad", clock) for objects in (3, 9))
-        yield Test(Estimate(abs(few.mean - 1) - abs(many.mean - 1), math.hypot(few.error, many.error), min(few.freedom, many.freedom)),
+        yield Test(Estimate(abs(few.mean - 1) - abs(many.mean - 1), math.hypot(few.standard_error, many.standard_error), min(few.freedom, many.freedom)),
                    low=0, when=f"they are counted {clock}")
 
 
@@ -211,7 +211,7 @@ def settings_like_the_paper(tables):
     def is_like(key, phase):
         for objects, ours in ratios[*key, phase].items():
             theirs = paper_ratio(objects, phase)
-            difference = Estimate(ours.mean - theirs.mean, math.hypot(ours.error, theirs.error), min(ours.freedom, theirs.freedom))
+            difference = Estimate(ours.mean - theirs.mean, math.hypot(ours.standard_error, theirs.error), min(ours.freedom, theirs.freedom))
             low, high = ours.interval()
             if not (difference.chance(0) > 0.05 and high - low < 0.6):
                 return False

@@ -43,9 +43,11 @@ class Estimates(unittest.TestCase):
         self.assertFalse(math.isfinite(sums.error), "equal ratios say nothing about other runs")
         # Without one pair each: 7/5, 5/4, 4/3.
         sums = ratio_of_sums([1, 3, 4], [1, 2, 3])
-        without = [7 / 5, 5 / 4, 4 / 3]
+        without = [math.log(ratio) for ratio in (7 / 5, 5 / 4, 4 / 3)]
         mean = sum(without) / 3
         self.assertAlmostEqual(sums.error, math.sqrt(2 / 3 * sum((value - mean) ** 2 for value in without)))
+        self.assertGreater(ratio_of_sums([1, 9, 1], [9, 1, 1]).interval()[0], 0)
+        self.assertFalse(ratio_of_sums([0, 2, 0], [1, 1, 1]).of_logarithm, "without one run nothing is left")
         self.assertTrue(math.isnan(ratio_of_sums([1], [0]).mean))
         self.assertTrue(math.isnan(quotient(mean_of([1, 2]), mean_of([0, 0])).mean))
         self.assertAlmostEqual(quotient(Estimate(0, 0.6, 4), Estimate(3, 0.3, 4)).error, 0.2)
