@@ -76,8 +76,7 @@ def ratio_of_sums(a, b):
     of_logarithm = without.min() > 0  # so that no interval of a positive ratio reaches below 0
     numbers = np.log(without) if of_logarithm else without
     error = math.sqrt((len(a) - 1) / len(a) * ((numbers - numbers.mean()) ** 2).sum())
-    # Equal runs say nothing about others.
-    return Estimate(ratio, error if error > 1e-12 else math.inf, len(a) - 1, of_logarithm)
+    return Estimate(ratio, error if error > 1e-12 else math.inf, len(a) - 1, of_logarithm)  # equal runs say nothing about others
 
 
 def quotient(a, b):
