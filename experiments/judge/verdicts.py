@@ -30,12 +30,11 @@ class Claim:
     @property
     def verdict(self):
         cases = self.cases()
-        holds = [when for when, outcome in cases.items() if outcome]
-        if len(holds) == len(cases):
-            return HOLDS
-        if holds:
-            return f"{HOLDS} if {in_one(holds)}"
-        return FAILS if all(outcome is False for outcome in cases.values()) else UNDECIDED
+        for verdict, decided in ((HOLDS, True), (FAILS, False)):
+            found = [when for when, outcome in cases.items() if outcome is decided]
+            if found:
+                return verdict if len(found) == len(cases) else f"{verdict} if {in_one(found)}"
+        return UNDECIDED
 
     @property
     def numbers(self):

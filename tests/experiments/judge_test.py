@@ -108,6 +108,9 @@ class Claims(unittest.TestCase):
                              ("table1_9", "aabb", (100, 110, 105, 108, 102), {}), ("table1_9", "sphere", (150, 160, 152, 171, 149), {})])
         self.assertEqual(found["more-with-boxes-simulated"].verdict, "Holds if there are 3 objects")
         self.assertEqual(list(found["more-with-boxes-simulated"].cases().values()), [True, False])
+        found_more = self.judged([("table1_3", "aabb", (9, 2, 5, 3, 9), {}), ("table1_3", "sphere", (5, 6, 5, 5, 6), {}),
+                                  ("table1_9", "aabb", (100, 110, 105, 108, 102), {}), ("table1_9", "sphere", (150, 160, 152, 171, 149), {})])
+        self.assertEqual(found_more["more-with-boxes-simulated"].verdict, "Does not hold if there are 9 objects")
         self.assertEqual(found["more-objects"].verdict, "Holds")
         self.assertEqual(found["averages"].verdict, "Does not hold")
         self.assertNotIn("test-cost", found, "its table is missing")
