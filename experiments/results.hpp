@@ -32,7 +32,7 @@ std::string csv_of(const std::vector<Cell>& row);
 struct Request {
   bool quick = false;  ///< a small version, in under a minute
   std::uint64_t seed = 1;
-  std::filesystem::path folder{};  ///< for files that are no tables
+  std::filesystem::path folder{};  ///< for the log of runs
   bool show_progress = false;
 };
 

@@ -76,7 +76,10 @@ def page(title, parts, style=""):
 
 
 def new_plot(title, x_label, y_label, height=4.3):
-    import matplotlib
+    try:
+        import matplotlib
+    except ImportError:
+        stop("supple: plots need matplotlib for python3; install it, on Debian by: apt-get install python3-matplotlib")
     from matplotlib.figure import Figure
     matplotlib.set_loglevel("error")  # the first run would report its cache of fonts
     matplotlib.rcParams.update({"svg.fonttype": "none", "font.size": 11, "axes.spines.top": False,

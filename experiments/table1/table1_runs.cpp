@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "commands/build_simulation.hpp"
+#include "inputs/placement.hpp"
 #include "program_2007/replay.hpp"
 #include "results.hpp"
 #include "session/settings.hpp"
@@ -156,10 +157,12 @@ std::vector<RunCounts> run_scene(const Motion& motion, std::uint64_t seed, bool 
   return counts;
 }
 
-RunLog::RunLog(const std::filesystem::path& folder, const std::string& name, bool resume) {
+RunLog::RunLog(const std::filesystem::path& folder, const std::string& name, std::uint64_t scenes,
+               bool resume) {
   make_folder(folder);
   const std::filesystem::path path = folder / (name + ".csv");
-  const std::string columns = csv_of(Table{name, run_columns}), head = csv_head() + columns;
+  const std::string head =
+      csv_head() + fmt::format("# scenes: {:016x}\n", scenes) + csv_of(Table{name, run_columns});
   const bool goes_on = resume && std::filesystem::exists(path);
   text_ = goes_on ? cli::read_text(path) : head;
   // A program that was killed leaves an incomplete line behind.
@@ -170,8 +173,8 @@ RunLog::RunLog(const std::filesystem::path& folder, const std::string& name, boo
     std::getline(lines, line);
     if (line != ours && !ours.starts_with("# date: "))
       throw Error(
-          fmt::format("--resume: {} has '{}', and this program writes '{}'; give the same command to the "
-                      "same program on the same machine, or leave out --resume to start again",
+          fmt::format("--resume: {} has '{}', and this program writes '{}'; give the same command and scenes "
+                      "to the same program on the same machine, or leave out --resume to start again",
                       path.string(), line, ours));
   }
   for (std::size_t number = 1; std::getline(lines, line); ++number) {
@@ -211,9 +214,12 @@ bool run_all(const std::vector<Motion>& motions, const RunOptions& options,
     std::vector<std::vector<Cell>> keys{};
   };
   std::vector<cli::Input> inputs;
-  for (const Motion& motion : motions)
+  std::uint64_t hash = 0;
+  for (const Motion& motion : motions) {
     inputs.push_back(read_scene(motion.scene, motion.variants.front().method.integrator, options.seed));
-  RunLog log(options.folder, options.name, options.resume);
+    for (const unsigned char c : inputs.back().scene_text) hash = cli::scrambled(hash ^ c);
+  }
+  RunLog log(options.folder, options.name, hash, options.resume);
   std::vector<Task> tasks;
   double total = 0;
   // In the order of the table, so that an interrupted experiment has complete rows.

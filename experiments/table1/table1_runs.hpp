@@ -62,9 +62,10 @@ std::vector<RunCounts> run_scene(const Motion& motion, std::uint64_t seed, bool 
 /// The complete runs, in a CSV file that gets a row as soon as a run is complete.
 class RunLog {
  public:
-  /// Starts the file in a folder, which is created if necessary, or with `resume` keeps its rows. Throws
-  /// `Error` when the file is not such a table, or when its head names another command, commit or machine.
-  RunLog(const std::filesystem::path& folder, const std::string& name, bool resume);
+  /// Starts the file in a folder, which is created if necessary, or with `resume` keeps its rows. `scenes` is
+  /// a hash of their texts. Throws `Error` when the file is not such a table, or when its head names another
+  /// command, commit or machine, or other scenes.
+  RunLog(const std::filesystem::path& folder, const std::string& name, std::uint64_t scenes, bool resume);
 
   bool has(const std::vector<Cell>& key) const;
   void add(std::vector<Cell> key, const RunCounts& counts);

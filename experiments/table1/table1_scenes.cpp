@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "inputs/placement.hpp"
 #include "scene_file/scene_file.hpp"
 #include "supple/error.hpp"
 

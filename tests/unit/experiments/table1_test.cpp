@@ -230,6 +230,21 @@ TEST_F(Table1Folder, ResumeNeedsTheSameProgramAndWholeRows) {
   EXPECT_EQ(error_with(std::string(whole).insert(date, "1")), "no error") << "it may go on at another day";
 }
 
+TEST_F(Table1Folder, ResumeNeedsTheSameTextOfAScene) {
+  const fs::path scene = folder_.string() + ".toml";
+  const auto write = [&](const char* model) {
+    std::ofstream(scene) << "[[object]]\nmodel = '" << model << "'\n[[object]]\nmodel = 'fish'\n";
+  };
+  options_.scenes = {scene_called(scene.string())};
+  options_.simulated_seconds = 0.1;
+  write("rabbit");
+  ASSERT_TRUE(run(false));
+  EXPECT_TRUE(run(true));
+  write("pawn");
+  EXPECT_NE(error_of([&] { run(true); }).find("# scenes: "), std::string::npos);
+  fs::remove(scene);
+}
+
 TEST_F(Table1Folder, TheClockOfTheProgramCountsTheMotionToo) {
   options_.simulated_seconds = 0;
   options_.program_clock = 0.05;
