@@ -89,7 +89,8 @@ class NearestTriangle {
         block_.set(0, i, point_);
         for (std::size_t k = 0; k < 3; ++k) block_.set(k + 1, i, corners[k]);
       }
-      classify(block_, count, false, limit_, codes.data());
+      // Looser than the limit, which is often so tight that vector kernels cannot decide.
+      classify(block_, count, false, std::min(max_distance_, limit_ * (1 + 0x1p-20)), codes.data());
       for (std::size_t i = 0; i < count && !stop_.stop_requested(); ++i) {
         if (codes[i] != FeatureCode::apart && part[i].distance <= limit_)
           decide(part[i].object, part[i].triangle, codes[i]);
