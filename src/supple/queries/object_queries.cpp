@@ -282,16 +282,6 @@ std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObjec
   return nearest.found();
 }
 
-std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
-                                                   double max_distance) {
-  const std::optional<FoundTriangle> found = nearest(objects, point, max_distance);
-  if (!found) return {};
-  bool used_exact = false;
-  const ElementDistance distance = distance_of(found->elements(), found->features, used_exact);
-  return ClosestPoint{objects[found->object].id, found->id,        distance.on_b,  distance.distance,
-                      distance.barycentric_b,    distance.point_b, distance.normal};
-}
-
 /// Calls `visit(hit)` with the triangles on the ray up to `limit`, which may decrease.
 template <class Visit>
 void ObjectQueries::visit_triangles_on_ray(std::span<const QueriedObject> objects, const Ray& ray,

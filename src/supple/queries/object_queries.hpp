@@ -85,10 +85,6 @@ class ObjectQueries {
   /// triangle is nearer.
   std::optional<FoundTriangle> nearest(std::span<const QueriedObject> objects, const Vec3d& point,
                                        double max_distance);
-  std::optional<ClosestPoint> closest(std::span<const QueriedObject> objects, const Vec3d& point,
-                                      double max_distance);
-  /// The triangle of the last result of `nearest`, in octree order.
-  std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
   /// How many triangles `nearest` and the rays have decided exactly.
   std::uint64_t decided() const { return decided_; }
   /// How many triangles `nearest` has bounded.
@@ -97,10 +93,6 @@ class ObjectQueries {
   /// Appends all triangles on the ray, ordered by t, object and triangle.
   void cast_all(std::span<const QueriedObject> objects, const Ray& ray, std::uint32_t query,
                 std::vector<ListedRayHit>& found);
-  /// Whether the point of the last `closest` is inside the object of its result.
-  bool is_inside_nearest(std::span<const QueriedObject> objects, const Vec3d& point) {
-    return inside(last_nearest_->object, objects[last_nearest_->object], point) == Containment::inside;
-  }
   /// Appends the triangles that overlap the region.
   void overlaps(std::span<const QueriedObject> objects, const QueryBox& box, std::uint32_t query,
                 std::vector<Overlap>& found);
