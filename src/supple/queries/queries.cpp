@@ -124,17 +124,21 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
     std::array<FoundFeatures, DistanceBatch::capacity> found;
     std::array<ElementDistance, DistanceBatch::capacity> distances;
     std::array<ClosestPoint*, DistanceBatch::capacity> places;
+    // Points and results are far apart in memory: none waits for another one here.
+    std::array<Vec3d, DistanceBatch::capacity> gathered;
+    std::array<std::optional<ClosestPoint>, DistanceBatch::capacity> answers;
+    for (std::size_t k = 0; k < part.size(); ++k) gathered[k] = points[part[k].triangle];
     std::size_t count = 0;
-    for (const auto& [code, i] : part) {
-      results[i].reset();
-      const auto nearest = worker.queries.nearest(use->objects, points[i], options.max_distance);
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      const auto nearest = worker.queries.nearest(use->objects, gathered[k], options.max_distance);
       if (!nearest) continue;
       const QueriedObject& object = use->objects[nearest->object];
-      const bool is_inside = options.signed_distance &&
-                             worker.queries.inside(nearest->object, object, points[i]) == Containment::inside;
-      results[i] = {object.id, nearest->id, {}, is_inside ? -1.0 : 1.0, {}, {}, {}};
+      const bool is_inside =
+          options.signed_distance &&
+          worker.queries.inside(nearest->object, object, gathered[k]) == Containment::inside;
+      answers[k] = {object.id, nearest->id, {}, is_inside ? -1.0 : 1.0, {}, {}, {}};
       found[count] = {nearest->elements(), nearest->features};
-      places[count++] = &*results[i];
+      places[count++] = &*answers[k];
     }
     std::uint64_t exact_count = 0;
     worker.distances.compute(std::span(found).first(count), distances, exact_count);
@@ -143,6 +147,7 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
       *places[k] = {places[k]->object, places[k]->triangle, d.on_b,  places[k]->distance * d.distance,
                     d.barycentric_b,   d.point_b,           d.normal};
     }
+    for (std::size_t k = 0; k < part.size(); ++k) results[part[k].triangle] = answers[k];
   });
   if (stop.stop_requested()) std::fill(results.begin(), results.end(), std::nullopt);
 }
