@@ -77,9 +77,14 @@ class NearestTriangle {
     if (found_ && !has_plane_) set_planes();
   }
 
-  /// Decides between the triangles that were kept.
-  void decide() {
+  /// Decides between the triangles that were kept. After the last call, the nearest one has no features.
+  void decide(bool is_last = false) {
     std::erase_if(candidates_, [&](const NearTriangle& candidate) { return candidate.distance > limit_; });
+    // Some triangle is within a limit that has decreased.
+    if (is_last && candidates_.size() == 1 && !found_ && limit_ < max_distance_) {
+      found_ = triangle_of(candidates_.front().object, candidates_.front().triangle);
+      return candidates_.clear();
+    }
     std::array<FeatureCode, PointsBlock::capacity> codes;
     for (std::size_t first = 0; first < candidates_.size(); first += codes.size()) {
       const auto part = std::span(candidates_).subspan(first);
@@ -100,8 +105,7 @@ class NearestTriangle {
   }
   void decide(std::uint32_t index, std::uint32_t t, FeatureCode code) {
     if (found_ && found_->object == index && found_->triangle == t) return;
-    const QueriedObject& object = objects_[index];
-    FoundTriangle other{point_, object.corners(t), {}, index, t, object.triangle_ids[t]};
+    const FoundTriangle other = triangle_of(index, t);
     const auto comes_later = [&] {
       return std::tie(found_->object, found_->id) < std::tie(other.object, other.id);
     };
@@ -111,8 +115,8 @@ class NearestTriangle {
                               ? closest_features_within(other.elements(), limit_, used_exact_)
                               : std::optional(features_of_code(code, false));
     if (!features) return;
-    other.features = *features;
-    const FeatureName feature = name_of(features_of_elements(*features, 1)[1], object.triangles[t], other.id);
+    const FeatureName feature =
+        name_of(features_of_elements(*features, 1)[1], objects_[index].triangles[t], other.id);
     if (found_) {
       const bool is_same_feature = found_->object == index && feature_ == feature;
       const int side =
@@ -120,6 +124,7 @@ class NearestTriangle {
       if (side > 0 || (side == 0 && comes_later())) return;
     }
     found_ = other;
+    features_ = *features;
     feature_ = feature;
     // Where there are no bounds, or vector kernels cannot decide, a plane helps.
     if (has_plane_ || code == FeatureCode::unknown || limit_ == max_distance_) set_planes();
@@ -132,6 +137,9 @@ class NearestTriangle {
   const std::optional<FoundTriangle>& found() const { return found_; }
 
  private:
+  FoundTriangle triangle_of(std::uint32_t index, std::uint32_t t) const {
+    return {point_, objects_[index].corners(t), index, t, objects_[index].triangle_ids[t]};
+  }
   bool is_behind(const QueryBox& box, double depth) const {
     return are_farther(planes_[0], {point_, point_}, 0, planes_[1], box, depth, distance_ * (1 + 0x1p-48));
   }
@@ -143,7 +151,7 @@ class NearestTriangle {
         {planes_[1].depth(corners[0]), planes_[1].depth(corners[1]), planes_[1].depth(corners[2])});
   }
   void set_planes() {
-    const ElementDistance found = distance_of(found_->elements(), found_->features, used_exact_);
+    const ElementDistance found = distance_of(found_->elements(), features_, used_exact_);
     const std::size_t first = found.on_b.kind == FeatureKind::face ? 0 : found.on_b.index;
     const auto& weights = found.barycentric_b;
     const std::size_t second = (first + 1) % 3, third = (first + 2) % 3;
@@ -173,6 +181,7 @@ class NearestTriangle {
   std::array<SupportPlane, 2> planes_;  // of the point and of the triangle
   double distance_ = 0;                 // of the two
   bool has_plane_ = false;
+  ClosestFeatures features_;  // of the two, and their name
   FeatureName feature_;
   bool used_exact_ = false;
   std::uint64_t decided_ = 0, bounded_ = 0;

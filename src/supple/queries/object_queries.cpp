@@ -275,7 +275,7 @@ std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObjec
           }
         });
   }
-  nearest.decide();
+  nearest.decide(true);
   decided_ += nearest.decided();
   bounded_ += nearest.bounded();
   if (nearest.found()) last_nearest_ = {0, nearest.found()->object, nearest.found()->triangle};

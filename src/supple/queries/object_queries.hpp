@@ -56,11 +56,10 @@ struct NearTriangle {
   std::uint32_t object = 0, triangle = 0;
 };
 
-/// A point, its nearest triangle, and the features that hold the closest points.
+/// A point and its nearest triangle.
 struct FoundTriangle {
   Vec3d point;
   TrianglePoints corners;
-  ClosestFeatures features;
   std::uint32_t object = 0, triangle = 0,
                 id = 0;  ///< by object in a list of objects, in octree order, the user's
 
@@ -79,8 +78,8 @@ class ObjectQueries {
   /// Call before queries to another list of objects, or after they changed. After a request to stop, queries
   /// end early, and their results are of no use.
   void start(const StopSignal& stop = {});
-  /// The nearest triangle of a finite point; of several, the first by object and number. Vector kernels
-  /// decide most features, and nothing is computed that the decision does not need. Looks first at the
+  /// The nearest triangle of a finite point; of several, the first by object and number. Computes
+  /// nothing that the decision does not need. Looks first at the
   /// triangle that was nearest to the point before: for points that are close to each other, hardly any other
   /// triangle is nearer.
   std::optional<FoundTriangle> nearest(std::span<const QueriedObject> objects, const Vec3d& point,

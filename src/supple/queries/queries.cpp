@@ -137,10 +137,11 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
           options.signed_distance &&
           worker.queries.inside(nearest->object, object, gathered[k]) == Containment::inside;
       answers[k] = {object.id, nearest->id, {}, is_inside ? -1.0 : 1.0, {}, {}, {}};
-      found[count] = {nearest->elements(), nearest->features};
+      found[count] = {nearest->elements(), {}};
       places[count++] = &*answers[k];
     }
     std::uint64_t exact_count = 0;
+    worker.distances.find_features(std::span(found).first(count));
     worker.distances.compute(std::span(found).first(count), distances, exact_count);
     for (std::size_t k = 0; k < count; ++k) {
       const ElementDistance& d = distances[k];

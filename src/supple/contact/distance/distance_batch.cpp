@@ -2,6 +2,20 @@
 
 namespace supple {
 
+void DistanceBatch::find_features(std::span<FoundFeatures> pairs) {
+  std::array<FeatureCode, capacity> codes;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (std::size_t k = 0; k < 4; ++k) block_.set(k, i, pairs[i].elements.points[k]);
+  }
+  classify(block_, pairs.size(), false, any_distance, codes.data());
+  bool used_exact = false;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].features = codes[i] < FeatureCode::apart
+                            ? features_of_code(codes[i], false)
+                            : *closest_features_within(pairs[i].elements, any_distance, used_exact);
+  }
+}
+
 void DistanceBatch::compute(std::span<const FoundFeatures> pairs, std::span<ElementDistance> results,
                             std::uint64_t& exact_count) {
   for (const FeaturePair kind :

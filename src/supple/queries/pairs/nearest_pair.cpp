@@ -129,7 +129,7 @@ void NearestPairSearch::guess_by_projection() {
     const auto nearest = queries_.nearest(std::span(&onto, 1), point, any_distance);
     if (!nearest) return;
     (i % 2 == 0 ? triangles.b : triangles.a) = nearest->triangle;
-    const ElementDistance closest = distance_of(nearest->elements(), nearest->features, used_exact_);
+    const ElementDistance closest = *distance_within(nearest->elements(), any_distance, used_exact_);
     if (i > 1 && !(closest.distance < last)) break;
     if (i > 0) last = closest.distance;
     point = closest.point_b;
