@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -135,6 +136,16 @@ class NearestTriangle {
   /// How many distances it bounded.
   std::uint64_t bounded() const { return bounded_; }
   const std::optional<FoundTriangle>& found() const { return found_; }
+
+  /// The corners are those of a triangle that the search will consider.
+  void limit_to(const TrianglePoints& corners) {
+    for (const Vec3d& corner : corners) {
+      const Vec3d way = corner - point_;
+      const double distance = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+      // Squares may underflow.
+      if (const double limit = distance * (1 + 0x1p-40) + 0x1p-500; limit < limit_) set_limit(limit);
+    }
+  }
 
  private:
   FoundTriangle triangle_of(std::uint32_t index, std::uint32_t t) const {

@@ -122,7 +122,7 @@ class ObjectQueries {
 
   StopSignal stop_;
   std::uint64_t decided_ = 0, bounded_ = 0;
-  std::optional<NearTriangle> last_nearest_;
+  std::optional<FoundTriangle> last_nearest_;
   std::vector<TriangleOnRay> on_ray_;  // of `cast_all`
   std::vector<NearTriangle> candidates_;
   PointsBlock block_{};  // of the nearest triangle
