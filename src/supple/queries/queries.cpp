@@ -140,9 +140,7 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
       found[count] = {nearest->elements(), {}};
       places[count++] = &*answers[k];
     }
-    std::uint64_t exact_count = 0;
-    worker.distances.find_features(std::span(found).first(count));
-    worker.distances.compute(std::span(found).first(count), distances, exact_count);
+    worker.distances.find(std::span(found).first(count), distances);
     for (std::size_t k = 0; k < count; ++k) {
       const ElementDistance& d = distances[k];
       *places[k] = {places[k]->object, places[k]->triangle, d.on_b,  places[k]->distance * d.distance,

@@ -2,20 +2,6 @@
 
 namespace supple {
 
-void DistanceBatch::find_features(std::span<FoundFeatures> pairs) {
-  std::array<FeatureCode, capacity> codes;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    for (std::size_t k = 0; k < 4; ++k) block_.set(k, i, pairs[i].elements.points[k]);
-  }
-  classify(block_, pairs.size(), false, any_distance, codes.data());
-  bool used_exact = false;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    pairs[i].features = codes[i] < FeatureCode::apart
-                            ? features_of_code(codes[i], false)
-                            : *closest_features_within(pairs[i].elements, any_distance, used_exact);
-  }
-}
-
 void DistanceBatch::compute(std::span<const FoundFeatures> pairs, std::span<ElementDistance> results,
                             std::uint64_t& exact_count) {
   for (const FeaturePair kind :
@@ -37,6 +23,20 @@ void DistanceBatch::compute(std::span<const FoundFeatures> pairs, std::span<Elem
       exact_count += used_exact ? 1 : 0;
     }
   }
+}
+
+void DistanceBatch::find(std::span<FoundFeatures> pairs, std::span<ElementDistance> results) {
+  std::array<FeatureCode, capacity> codes;
+  for (std::size_t i = 0; i < pairs.size(); ++i) block_.set_features(i, pairs[i].elements, {});
+  classify(block_, pairs.size(), false, any_distance, codes.data());
+  bool used_exact = false;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].features = codes[i] < FeatureCode::apart
+                            ? features_of_code(codes[i], false)
+                            : *closest_features_within(pairs[i].elements, any_distance, used_exact);
+  }
+  std::uint64_t exact_count = 0;
+  compute(pairs, results, exact_count);
 }
 
 }  // namespace supple
