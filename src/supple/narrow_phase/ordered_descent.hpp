@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -50,12 +50,17 @@ class OrderedDescent {
     const std::size_t first = stack_.size();
     std::array<double, node_width> bounds;
     bound_children(node, bounds);
-    for (int child = 0; child < view.nodes[node].child_count; ++child) {
-      if (bounds[static_cast<std::size_t>(child)] <= limit && !child_box(view.boxes[node], child).empty())
-        stack_.push_back({bounds[static_cast<std::size_t>(child)], node, child});
+    std::uint32_t near = 0;  // without a branch for each child
+    for (std::uint32_t i = 0; i < node_width; ++i) near |= (bounds[i] <= limit ? 1u : 0u) << i;
+    for (near &= view.nodes[node].child_mask(); near != 0; near &= near - 1) {
+      const int child = std::countr_zero(near);
+      const double bound = bounds[static_cast<std::size_t>(child)];
+      if (view.boxes[node].min_x[child] > view.boxes[node].max_x[child]) continue;  // empty
+      std::size_t place = stack_.size();
+      stack_.emplace_back();
+      for (; place > first && stack_[place - 1].bound < bound; --place) stack_[place] = stack_[place - 1];
+      stack_[place] = {bound, node, child};
     }
-    std::sort(stack_.begin() + static_cast<std::ptrdiff_t>(first), stack_.end(),
-              [](const Entry& a, const Entry& b) { return a.bound > b.bound; });
   }
 
   std::vector<Entry> stack_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -77,9 +78,14 @@ class NearestTriangle {
     if (found_ && !has_plane_) set_planes();
   }
 
-  /// Decides between the triangles that were kept.
-  void decide() {
+  /// Decides between the triangles that were kept. After the last call, the nearest one has no features.
+  void decide(bool is_last = false) {
     std::erase_if(candidates_, [&](const NearTriangle& candidate) { return candidate.distance > limit_; });
+    // Some triangle is within a limit that has decreased.
+    if (is_last && candidates_.size() == 1 && !found_ && limit_ < max_distance_) {
+      found_ = triangle_of(candidates_.front().object, candidates_.front().triangle);
+      return candidates_.clear();
+    }
     std::array<FeatureCode, PointsBlock::capacity> codes;
     for (std::size_t first = 0; first < candidates_.size(); first += codes.size()) {
       const auto part = std::span(candidates_).subspan(first);
@@ -89,7 +95,8 @@ class NearestTriangle {
         block_.set(0, i, point_);
         for (std::size_t k = 0; k < 3; ++k) block_.set(k + 1, i, corners[k]);
       }
-      classify(block_, count, false, limit_, codes.data());
+      // Looser than the limit, which is often so tight that vector kernels cannot decide.
+      classify(block_, count, false, std::min(max_distance_, limit_ * (1 + 0x1p-20)), codes.data());
       for (std::size_t i = 0; i < count && !stop_.stop_requested(); ++i) {
         if (codes[i] != FeatureCode::apart && part[i].distance <= limit_)
           decide(part[i].object, part[i].triangle, codes[i]);
@@ -99,8 +106,7 @@ class NearestTriangle {
   }
   void decide(std::uint32_t index, std::uint32_t t, FeatureCode code) {
     if (found_ && found_->object == index && found_->triangle == t) return;
-    const QueriedObject& object = objects_[index];
-    FoundTriangle other{point_, object.corners(t), {}, index, t, object.triangle_ids[t]};
+    const FoundTriangle other = triangle_of(index, t);
     const auto comes_later = [&] {
       return std::tie(found_->object, found_->id) < std::tie(other.object, other.id);
     };
@@ -110,8 +116,8 @@ class NearestTriangle {
                               ? closest_features_within(other.elements(), limit_, used_exact_)
                               : std::optional(features_of_code(code, false));
     if (!features) return;
-    other.features = *features;
-    const FeatureName feature = name_of(features_of_elements(*features, 1)[1], object.triangles[t], other.id);
+    const FeatureName feature =
+        name_of(features_of_elements(*features, 1)[1], objects_[index].triangles[t], other.id);
     if (found_) {
       const bool is_same_feature = found_->object == index && feature_ == feature;
       const int side =
@@ -119,6 +125,7 @@ class NearestTriangle {
       if (side > 0 || (side == 0 && comes_later())) return;
     }
     found_ = other;
+    features_ = *features;
     feature_ = feature;
     // Where there are no bounds, or vector kernels cannot decide, a plane helps.
     if (has_plane_ || code == FeatureCode::unknown || limit_ == max_distance_) set_planes();
@@ -130,7 +137,20 @@ class NearestTriangle {
   std::uint64_t bounded() const { return bounded_; }
   const std::optional<FoundTriangle>& found() const { return found_; }
 
+  /// The corners are those of a triangle that the search will consider.
+  void limit_to(const TrianglePoints& corners) {
+    for (const Vec3d& corner : corners) {
+      const Vec3d way = corner - point_;
+      const double distance = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+      // Squares may underflow.
+      if (const double limit = distance * (1 + 0x1p-40) + 0x1p-500; limit < limit_) set_limit(limit);
+    }
+  }
+
  private:
+  FoundTriangle triangle_of(std::uint32_t index, std::uint32_t t) const {
+    return {point_, objects_[index].corners(t), index, t, objects_[index].triangle_ids[t]};
+  }
   bool is_behind(const QueryBox& box, double depth) const {
     return are_farther(planes_[0], {point_, point_}, 0, planes_[1], box, depth, distance_ * (1 + 0x1p-48));
   }
@@ -142,7 +162,7 @@ class NearestTriangle {
         {planes_[1].depth(corners[0]), planes_[1].depth(corners[1]), planes_[1].depth(corners[2])});
   }
   void set_planes() {
-    const ElementDistance found = distance_of(found_->elements(), found_->features, used_exact_);
+    const ElementDistance found = distance_of(found_->elements(), features_, used_exact_);
     const std::size_t first = found.on_b.kind == FeatureKind::face ? 0 : found.on_b.index;
     const auto& weights = found.barycentric_b;
     const std::size_t second = (first + 1) % 3, third = (first + 2) % 3;
@@ -172,6 +192,7 @@ class NearestTriangle {
   std::array<SupportPlane, 2> planes_;  // of the point and of the triangle
   double distance_ = 0;                 // of the two
   bool has_plane_ = false;
+  ClosestFeatures features_;  // of the two, and their name
   FeatureName feature_;
   bool used_exact_ = false;
   std::uint64_t decided_ = 0, bounded_ = 0;

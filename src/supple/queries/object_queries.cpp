@@ -246,7 +246,7 @@ std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObjec
   if (!is_finite(point)) return {};
   NearestTriangle nearest(objects, point, max_distance, stop_, candidates_, block_);
   const auto bound_of = [&](const Aabb& box) { return distance_bound(point, box); };
-  if (last_nearest_) nearest.consider(last_nearest_->object, last_nearest_->triangle, 1);
+  if (last_nearest_) nearest.limit_to(last_nearest_->corners);
   order(objects, bound_of, nearest.limit());
   for (const auto& [object_bound, object_index] : order_) {
     const std::uint32_t index = object_index;
@@ -259,7 +259,10 @@ std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObjec
       if (!first) continue;
       nearest.decide(index, *first, FeatureCode::unknown);
       // The triangle of the query before was nearer than the frontmost one.
-      if (!nearest.has_plane()) nearest.find_plane();
+      if (!nearest.has_plane() && last_nearest_) {
+        nearest.consider(last_nearest_->object, last_nearest_->triangle, 1);
+        nearest.find_plane();
+      }
     }
     descent_.run(
         object.view,
@@ -275,21 +278,11 @@ std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObjec
           }
         });
   }
-  nearest.decide();
+  nearest.decide(true);
   decided_ += nearest.decided();
   bounded_ += nearest.bounded();
-  if (nearest.found()) last_nearest_ = {0, nearest.found()->object, nearest.found()->triangle};
+  if (nearest.found()) last_nearest_ = nearest.found();
   return nearest.found();
-}
-
-std::optional<ClosestPoint> ObjectQueries::closest(std::span<const QueriedObject> objects, const Vec3d& point,
-                                                   double max_distance) {
-  const std::optional<FoundTriangle> found = nearest(objects, point, max_distance);
-  if (!found) return {};
-  bool used_exact = false;
-  const ElementDistance distance = distance_of(found->elements(), found->features, used_exact);
-  return ClosestPoint{objects[found->object].id, found->id,        distance.on_b,  distance.distance,
-                      distance.barycentric_b,    distance.point_b, distance.normal};
 }
 
 /// Calls `visit(hit)` with the triangles on the ray up to `limit`, which may decrease.

@@ -56,11 +56,10 @@ struct NearTriangle {
   std::uint32_t object = 0, triangle = 0;
 };
 
-/// A point, its nearest triangle, and the features that hold the closest points.
+/// A point and its nearest triangle.
 struct FoundTriangle {
   Vec3d point;
   TrianglePoints corners;
-  ClosestFeatures features;
   std::uint32_t object = 0, triangle = 0,
                 id = 0;  ///< by object in a list of objects, in octree order, the user's
 
@@ -79,16 +78,12 @@ class ObjectQueries {
   /// Call before queries to another list of objects, or after they changed. After a request to stop, queries
   /// end early, and their results are of no use.
   void start(const StopSignal& stop = {});
-  /// The nearest triangle of a finite point; of several, the first by object and number. Vector kernels
-  /// decide most features, and nothing is computed that the decision does not need. Looks first at the
+  /// The nearest triangle of a finite point; of several, the first by object and number. Computes
+  /// nothing that the decision does not need. Looks first at the
   /// triangle that was nearest to the point before: for points that are close to each other, hardly any other
   /// triangle is nearer.
   std::optional<FoundTriangle> nearest(std::span<const QueriedObject> objects, const Vec3d& point,
                                        double max_distance);
-  std::optional<ClosestPoint> closest(std::span<const QueriedObject> objects, const Vec3d& point,
-                                      double max_distance);
-  /// The triangle of the last result of `nearest`, in octree order.
-  std::uint32_t last_nearest_triangle() const { return last_nearest_->triangle; }
   /// How many triangles `nearest` and the rays have decided exactly.
   std::uint64_t decided() const { return decided_; }
   /// How many triangles `nearest` has bounded.
@@ -97,10 +92,6 @@ class ObjectQueries {
   /// Appends all triangles on the ray, ordered by t, object and triangle.
   void cast_all(std::span<const QueriedObject> objects, const Ray& ray, std::uint32_t query,
                 std::vector<ListedRayHit>& found);
-  /// Whether the point of the last `closest` is inside the object of its result.
-  bool is_inside_nearest(std::span<const QueriedObject> objects, const Vec3d& point) {
-    return inside(last_nearest_->object, objects[last_nearest_->object], point) == Containment::inside;
-  }
   /// Appends the triangles that overlap the region.
   void overlaps(std::span<const QueriedObject> objects, const QueryBox& box, std::uint32_t query,
                 std::vector<Overlap>& found);
@@ -131,7 +122,7 @@ class ObjectQueries {
 
   StopSignal stop_;
   std::uint64_t decided_ = 0, bounded_ = 0;
-  std::optional<NearTriangle> last_nearest_;
+  std::optional<FoundTriangle> last_nearest_;
   std::vector<TriangleOnRay> on_ray_;  // of `cast_all`
   std::vector<NearTriangle> candidates_;
   PointsBlock block_{};  // of the nearest triangle

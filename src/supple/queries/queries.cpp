@@ -87,17 +87,16 @@ void Queries::list_objects(const QueryFilter& filter, const char* call, Call& us
 template <class Answer>
 void Queries::answer(std::span<const Vec3d> places, const StopSignal& stop, Call& use,
                      const Answer& answer) const {
-  constexpr std::size_t grain = 64;
+  constexpr std::size_t grain = DistanceBatch::capacity;
   use.order.resize(places.size());
   for (std::uint32_t i = 0; i < places.size(); ++i) use.order[i].triangle = i;
   sort_along_curve(use.order, places);
-  world_.parallel.for_ranges(places.size(), grain,
-                             [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
-                               ObjectQueries& queries = use.workers[worker].queries;
-                               queries.start(stop);
-                               for (std::size_t k = begin; k < end && !stop.stop_requested(); ++k)
-                                 answer(queries, use.order[k].triangle);
-                             });
+  world_.parallel.for_ranges(
+      places.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
+        use.workers[worker].queries.start(stop);
+        for (; begin < end && !stop.stop_requested(); begin += grain)
+          answer(use.workers[worker], std::span(use.order).subspan(begin, std::min(grain, end - begin)));
+      });
 }
 
 void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<ClosestPoint>> results,
@@ -121,10 +120,33 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
     }
   }
   const StopSignal stop = stop_of(options.limits);
-  answer(points, stop, *use, [&](ObjectQueries& queries, std::size_t i) {
-    results[i] = queries.closest(use->objects, points[i], options.max_distance);
-    if (options.signed_distance && results[i] && queries.is_inside_nearest(use->objects, points[i]))
-      results[i]->distance = -results[i]->distance;
+  answer(points, stop, *use, [&](Worker& worker, std::span<const CurvePlace> part) {
+    std::array<FoundFeatures, DistanceBatch::capacity> found;
+    std::array<ElementDistance, DistanceBatch::capacity> distances;
+    std::array<ClosestPoint*, DistanceBatch::capacity> places;
+    // Points and results are far apart in memory: none waits for another one here.
+    std::array<Vec3d, DistanceBatch::capacity> gathered;
+    std::array<std::optional<ClosestPoint>, DistanceBatch::capacity> answers;
+    for (std::size_t k = 0; k < part.size(); ++k) gathered[k] = points[part[k].triangle];
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      const auto nearest = worker.queries.nearest(use->objects, gathered[k], options.max_distance);
+      if (!nearest) continue;
+      const QueriedObject& object = use->objects[nearest->object];
+      const bool is_inside =
+          options.signed_distance &&
+          worker.queries.inside(nearest->object, object, gathered[k]) == Containment::inside;
+      answers[k] = {object.id, nearest->id, {}, is_inside ? -1.0 : 1.0, {}, {}, {}};
+      found[count] = {nearest->elements(), {}};
+      places[count++] = &*answers[k];
+    }
+    worker.distances.find(std::span(found).first(count), distances);
+    for (std::size_t k = 0; k < count; ++k) {
+      const ElementDistance& d = distances[k];
+      *places[k] = {places[k]->object, places[k]->triangle, d.on_b,  places[k]->distance * d.distance,
+                    d.barycentric_b,   d.point_b,           d.normal};
+    }
+    for (std::size_t k = 0; k < part.size(); ++k) results[part[k].triangle] = answers[k];
   });
   if (stop.stop_requested()) std::fill(results.begin(), results.end(), std::nullopt);
 }
@@ -140,8 +162,9 @@ void Queries::cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> r
   use->origins.clear();
   for (const Ray& ray : rays) use->origins.push_back(ray.origin);
   const StopSignal stop = stop_of(options.limits);
-  answer(use->origins, stop, *use, [&](ObjectQueries& queries, std::size_t i) {
-    results[i] = queries.cast(use->objects, rays[i], options.count_hits);
+  answer(use->origins, stop, *use, [&](Worker& worker, std::span<const CurvePlace> part) {
+    for (const auto& [code, i] : part)
+      results[i] = worker.queries.cast(use->objects, rays[i], options.count_hits);
   });
   if (stop.stop_requested()) std::fill(results.begin(), results.end(), std::nullopt);
 }

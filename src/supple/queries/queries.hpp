@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/distance/distance_batch.hpp"
 #include "core/lock.hpp"
 #include "core/stop_signal.hpp"
 #include "octree/morton_curve.hpp"
@@ -52,6 +53,7 @@ class Queries {
   struct Worker {
     ObjectQueries queries;
     NearestPairSearch pair_search;
+    DistanceBatch distances;
     std::vector<CurvePlace> order;
     std::vector<ListedRayHit> hits;
     std::vector<Overlap> overlaps;
@@ -94,7 +96,7 @@ class Queries {
                              const char* call, const CallLimits& limits, const Find& find) const;
   /// Lists the objects that the filter lets through. The caller holds the mutex.
   void list_objects(const QueryFilter& filter, const char* call, Call& use) const;
-  /// Calls `answer(queries, i)` once for each query i.
+  /// Calls `answer(worker, part)` with all queries, at most `DistanceBatch::capacity` at a time.
   template <class Answer>
   void answer(std::span<const Vec3d> places, const StopSignal& stop, Call& use, const Answer& answer) const;
   void find_inside(const QueriedObject& object, std::span<const Vec3d> points, const StopSignal& stop,

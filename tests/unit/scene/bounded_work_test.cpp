@@ -272,7 +272,7 @@ TEST(BoundedWork, OfAClosestPointIsThatOfANearOne) {
         const Vec3d point = moves_ball ? aside : ratio * direction + aside;
         ObjectQueries queries;
         queries.start();
-        ASSERT_TRUE(queries.closest({&object, 1}, point, any_distance));
+        ASSERT_TRUE(queries.nearest({&object, 1}, point, any_distance));
         const bool is_flat = moves_ball && ratio >= collapsing_ratio;
         EXPECT_LT(queries.decided(), is_flat ? 2 * ball.triangles.size() : 100u)
             << ratio << " " << moves_ball;
@@ -291,7 +291,7 @@ TEST(BoundedWork, OfClosestPointsThatFollowEachOther) {
     queries.start();
     for (std::uint32_t i = 0; i < count; ++i) {
       const double turns = 1e-3 * i;
-      ASSERT_TRUE(queries.closest({&object, 1}, ratio * Vec3d{cos_turns(turns), sin_turns(turns), 0.3},
+      ASSERT_TRUE(queries.nearest({&object, 1}, ratio * Vec3d{cos_turns(turns), sin_turns(turns), 0.3},
                                   any_distance));
     }
     EXPECT_LT(queries.bounded(), count * ball.triangles.size() / 20) << ratio;

@@ -277,10 +277,9 @@ void PenetrationPass::find_depths(std::size_t begin, std::size_t end, Worker& wo
         *worker.queries.nearest(std::span(&outer.queried, 1), inner.position(penetration.vertex),
                                 std::numeric_limits<double>::infinity());
     penetration.triangle = nearest.id;
-    found[i - begin] = {nearest.elements(), nearest.features};
+    found[i - begin] = {nearest.elements(), {}};
   }
-  std::uint64_t exact_count = 0;
-  worker.distances.compute(std::span(found).first(end - begin), distances, exact_count);
+  worker.distances.find(std::span(found).first(end - begin), distances);
   for (std::size_t i = begin; i < end; ++i) {
     Penetration& penetration = found_.penetrations[new_penetrations_[i]];
     const ElementDistance& distance = distances[i - begin];

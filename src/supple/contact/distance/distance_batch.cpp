@@ -25,4 +25,18 @@ void DistanceBatch::compute(std::span<const FoundFeatures> pairs, std::span<Elem
   }
 }
 
+void DistanceBatch::find(std::span<FoundFeatures> pairs, std::span<ElementDistance> results) {
+  std::array<FeatureCode, capacity> codes;
+  for (std::size_t i = 0; i < pairs.size(); ++i) block_.set_features(i, pairs[i].elements, {});
+  classify(block_, pairs.size(), false, any_distance, codes.data());
+  bool used_exact = false;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].features = codes[i] < FeatureCode::apart
+                            ? features_of_code(codes[i], false)
+                            : *closest_features_within(pairs[i].elements, any_distance, used_exact);
+  }
+  std::uint64_t exact_count = 0;
+  compute(pairs, results, exact_count);
+}
+
 }  // namespace supple

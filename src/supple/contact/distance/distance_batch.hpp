@@ -21,6 +21,8 @@ class DistanceBatch {
   /// `distance_of` of at most `capacity` pairs. Adds the number of those that need integers to `exact_count`.
   void compute(std::span<const FoundFeatures> pairs, std::span<ElementDistance> results,
                std::uint64_t& exact_count);
+  /// The same for points and triangles, whose features it finds first.
+  void find(std::span<FoundFeatures> pairs, std::span<ElementDistance> results);
 
  private:
   PointsBlock block_{};

@@ -126,12 +126,13 @@ void NearestPairSearch::guess_by_projection() {
   for (int i = 0; i < most; ++i) {
     const QueriedObject& onto = i % 2 == 0 ? *b_ : *a_;
     queries_.start(stop_);
-    const auto closest = queries_.closest(std::span(&onto, 1), point, any_distance);
-    if (!closest) return;
-    (i % 2 == 0 ? triangles.b : triangles.a) = queries_.last_nearest_triangle();
-    if (i > 1 && !(closest->distance < last)) break;
-    if (i > 0) last = closest->distance;
-    point = closest->point;
+    const auto nearest = queries_.nearest(std::span(&onto, 1), point, any_distance);
+    if (!nearest) return;
+    (i % 2 == 0 ? triangles.b : triangles.a) = nearest->triangle;
+    const ElementDistance closest = *distance_within(nearest->elements(), any_distance, used_exact_);
+    if (i > 1 && !(closest.distance < last)) break;
+    if (i > 0) last = closest.distance;
+    point = closest.point_b;
     if (!is_finite(point)) return;
   }
   decide(triangles);
