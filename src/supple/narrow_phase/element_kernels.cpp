@@ -89,7 +89,7 @@ HWY_INLINE void set_block(const MovingView& view, const Ids& ids, ElementRange r
   }
   set_boxes(view.start_corners, ids, range, block.start);
   if (!at_rest) set_boxes(view.end_corners, ids, range, block.end);
-  if (part.separation > 0 || part.latest < 1 || !(part.offset == Vec3f{})) {
+  if (!part.keeps_boxes()) {
     const hn::CappedTag<float, 16> tag;
     for (int side = 0; side < 6; ++side) {
       for (std::size_t i = 0; i < range.size(); i += hn::Lanes(tag))
@@ -247,8 +247,8 @@ class ElementTests {
   template <class Ids>
   const MovingBoxBlock& boxes_of(const MovingView& view, const Elements<Ids>& elements,
                                  MovingBoxCache::Side& side, ElementRange block, const PartOfStep& part) {
-    static_assert(MovingBoxCache::size == 16);
-    const std::size_t place = block.begin * 0x9e3779b1u >> 28;
+    static_assert(MovingBoxCache::size == 32);
+    const std::size_t place = block.begin * 0x9e3779b1u >> 27;
     MovingBoxCache::Kind& kind = side.*elements.cache;
     if (std::exchange(kind.first_elements[place], block.begin) != block.begin)
       set_block(view, elements.ids, block, part, same_object_, at_rest_, kind.blocks[place]);

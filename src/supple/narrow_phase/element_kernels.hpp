@@ -81,6 +81,9 @@ struct PartOfStep {
   /// For objects at rest: also tests edges against faces, with this separation of their boxes, which covers
   /// only the rounding errors. Negative: does not.
   float crossing_separation = -1;
+
+  /// Whether boxes stay as they are: the whole step, with neither a separation nor an offset.
+  bool keeps_boxes() const { return !(separation > 0 || latest < 1) && offset == Vec3f{}; }
 };
 
 /// Boxes of up to `leaf_block` elements of one kind at both ends of (a part of) a step: min x, y, z, max x,
@@ -94,7 +97,7 @@ struct alignas(64) MovingBoxBlock {
 /// A cache of the boxes of the elements of recent leaves, for vertices, edges and faces; most are soon used
 /// again. Valid for one pair of objects on their paths; clear it for others.
 struct MovingBoxCache {
-  static constexpr std::size_t size = 16;
+  static constexpr std::size_t size = 32;
   struct Kind {
     std::array<std::uint32_t, size> first_elements;
     std::array<MovingBoxBlock, size> blocks;

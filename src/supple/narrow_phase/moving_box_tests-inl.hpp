@@ -88,7 +88,7 @@ HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& boxes, std::size_t i, c
     box.start[side] = boxes.start[side * boxes.stride + i];
     box.end[side] = (boxes.end != nullptr ? boxes.end : boxes.start)[side * boxes.stride + i];
   }
-  if (box.start[0] > greatest_bound) return box;
+  if (box.start[0] > greatest_bound || part.keeps_boxes()) return box;
   for (int side = 0; side < 6; ++side)
     place_and_shorten(hn::CappedTag<float, 1>(), box.start + side, box.end + side, side, part);
   return box;

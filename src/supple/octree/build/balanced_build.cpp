@@ -215,7 +215,7 @@ class BalancedSplitter {
     if (parts.size() < 2 || count < least_part_size * parts.size()) return 0;
     Aabb all;
     for (const Part& part : parts) extend(all, part.box);
-    const std::uint32_t lower = choose_lower_parts(parts, all, count);
+    const std::uint32_t lower = choose_lower_parts(parts, count);
     Aabb lower_box, upper_box, half = all;
     for (const Part& part : parts) extend(part.is_lower ? lower_box : upper_box, part.box);
     const int axis = longest_axis(all);
@@ -248,14 +248,16 @@ class BalancedSplitter {
     }
   }
 
-  /// Chooses a part that has more than half of the triangles, or else the first parts along the longest axis.
-  static std::uint32_t choose_lower_parts(std::vector<Part>& parts, const Aabb& all, std::uint32_t size) {
+  /// Chooses a part with over half of the triangles, or else the first along the longest axis of middles.
+  static std::uint32_t choose_lower_parts(std::vector<Part>& parts, std::uint32_t size) {
     const auto largest = std::ranges::max_element(parts, {}, &Part::size);
     if (largest->size > size / 2) {
       largest->is_lower = true;
       return largest->size;
     }
-    const int axis = longest_axis(all);
+    Aabb middles;
+    for (const Part& part : parts) extend(middles, Vec3f{part.center(0), part.center(1), part.center(2)});
+    const int axis = longest_axis(middles);
     std::ranges::sort(parts, {}, [&](const Part& part) { return std::pair(part.center(axis), part.name); });
     std::uint32_t lower = 0;
     for (Part& part : parts) {
