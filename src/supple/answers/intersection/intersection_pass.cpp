@@ -202,8 +202,8 @@ void IntersectionPass::add_crossing(const TaskInput& input, std::size_t count, W
                             static_cast<std::uint16_t>(worker.number), IntersectionKind::segment, 2});
     if (!search_.contact_points) continue;
     worker.details.push_back({worker.segments.normal(k), static_cast<std::uint32_t>(worker.points.size())});
-    const std::array ends{worker.segments.end(0, k), worker.segments.end(1, k)};
-    worker.points.insert(worker.points.end(), ends.begin(), ends.end());
+    worker.points.push_back(worker.segments.end(0, k));
+    worker.points.push_back(worker.segments.end(1, k));
   }
   std::copy(worker.crossing.begin() + static_cast<std::ptrdiff_t>(count),
             worker.crossing.begin() + static_cast<std::ptrdiff_t>(worker.crossing_count),
@@ -301,8 +301,11 @@ void IntersectionPass::gather_found(std::size_t outcome, Worker& worker, const P
       const Worker& finder = workers_[found.worker];
       const IntersectionWorker::Details& details = finder.details[found.details];
       contact.normal = details.normal;
-      std::copy_n(finder.points.begin() + static_cast<std::ptrdiff_t>(details.first_point), found.point_count,
-                  points_.begin() + static_cast<std::ptrdiff_t>(contact.first_point));
+      const ContactPoint* const from = &finder.points[details.first_point];
+      ContactPoint* const to = &points_[contact.first_point];
+      to[0] = from[0];
+      if (found.point_count > 1) to[1] = from[1];  // most have two: no loop, which would be a call
+      for (std::uint8_t p = 2; p < found.point_count; ++p) to[p] = from[p];
     }
   });
 }
