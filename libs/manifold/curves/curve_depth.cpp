@@ -76,13 +76,14 @@ bool CurveFinder::find_separation(std::span<const std::uint32_t> members, Inters
   return is_found;
 }
 
-/// Adds points inside both bodies as probes, next to contacts. Where faces are flush, no vertex is inside.
-/// Each probe costs time: with one, 2 of 60,000 random pairs of solids still overlap after the move, and with
-/// four none of 380,000.
-void CurveFinder::add_common_points(std::span<const std::uint32_t> members) {
+/// Adds points inside both bodies as probes, next to contacts whose faces `list_face_normals` has counted:
+/// beside others, there may be none. Where faces are flush, no vertex is inside. Each probe costs time: with
+/// one, 2 of 60,000 random pairs of solids still overlap after the move, and with four none of 380,000.
+void CurveFinder::add_common_points() {
   constexpr std::size_t most = 4;
-  for (std::size_t k = 0; k < std::min(members.size(), most); ++k) {
-    const std::uint32_t i = members[k * members.size() / std::min(members.size(), most)];
+  const std::size_t count = std::min(counted_.size(), most);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = counted_[k * counted_.size() / count];
     const std::uint32_t place = first_place(i);
     const Vec3d middle = 0.5 * position(place) + 0.5 * position(place + contact(i).point_count - 1);
     const Vec3d point =
@@ -117,11 +118,9 @@ void CurveFinder::find_way_out(std::span<const std::uint32_t> members, Intersect
       way_out_.add_probe(side, surface_of(side).position(v));
     for (const Vec3d& p : regions_[side].middles()) way_out_.add_probe(side, p);
   }
-
-  if (input_.a->is_solid && input_.b->is_solid && !input_.same_object()) add_common_points(members);
-
   list_face_normals(members, false);
   if (directions_.empty()) list_face_normals(members, true);
+  if (input_.a->is_solid && input_.b->is_solid && !input_.same_object()) add_common_points();
   candidates_.clear();
   for (const Direction& direction : directions_) {
     const Vec3d normal{direction.normal[0], direction.normal[1], direction.normal[2]};

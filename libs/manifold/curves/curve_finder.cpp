@@ -285,10 +285,12 @@ void CurveFinder::list_face_normals(std::span<const std::uint32_t> members, bool
           {{rounded(n.x), rounded(n.y), rounded(n.z)}, side, {n.x, n.y, n.z}, triangle, length});
   };
   directions_.clear();
+  counted_.clear();
   for (const std::uint32_t i : members) {
     const double length = length_of(i);
     if (length == 0 || (!counts_touching && only_touches(i))) continue;
     whole += length;
+    counted_.push_back(i);
     for (std::uint8_t side = 0; side < 2; ++side) {
       const Vec3d& outward = face_normals_[i][is_turned(i) ? 1 - side : side];
       add(side == 0 ? Vec3d{} - outward : outward, length, triangle_of(i, side), side);

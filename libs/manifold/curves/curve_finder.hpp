@@ -59,7 +59,7 @@ class CurveFinder : public CurveMaker {
   bool separates(std::size_t side, std::uint32_t face, std::span<const std::uint32_t> members) const;
   double length_of(std::uint32_t i) const;
   bool find_separation(std::span<const std::uint32_t> members, IntersectionCurve& curve);
-  void add_common_points(std::span<const std::uint32_t> members);
+  void add_common_points();
   void find_way_out(std::span<const std::uint32_t> members, IntersectionCurve& curve);
   std::size_t enclose(std::span<const std::uint32_t> members, bool side_b, CurveLists& lists);
 
@@ -115,6 +115,7 @@ class CurveFinder : public CurveMaker {
     constexpr auto operator<=>(const Direction&) const = default;
   };
   std::vector<Direction> directions_;
+  std::vector<std::uint32_t> counted_;  // contacts on whose faces the curve lies by `list_face_normals`
   std::vector<WayCandidate> candidates_;
   CurveSide side_;
   std::array<ContactRegions, 2> regions_;  // of the surfaces

@@ -43,6 +43,76 @@ std::uint64_t NearTriangles(const Aabb& point, const LeafBoxes& boxes, float lim
   return near & boxes.triangles;
 }
 
+void PacketDistances(const PointPacket& points, const ChildBoxes& boxes, float* squares) {
+  const hn::CappedTag<float, node_width> d;
+  for (std::size_t i = 0; i < node_width; i += hn::Lanes(d)) {
+    auto least = hn::Inf(d);
+    for (std::size_t k = 0; k < PointPacket::capacity; ++k) {
+      const Vec3f p{points.points[0][k], points.points[1][k], points.points[2][k]};
+      const auto square = squares_of(d, {p, p}, boxes, i);
+      const auto near = hn::IfThenElse(hn::Le(square, hn::Set(d, points.limits[k])), square, hn::Inf(d));
+      least = hn::Min(least, near);
+    }
+    hn::StoreU(least, d, squares + i);
+  }
+}
+
+/// Which points are so near to the cylinder of a leaf.
+std::uint64_t PointsNearLeaf(const PointPacket& points, const LeafCorners& leaf) {
+  const hn::CappedTag<float, PointPacket::capacity> d;
+  const auto zero = hn::Zero(d), less = hn::Set(d, 1 - 0x1p-17F);
+  std::uint64_t near = 0;
+  for (std::size_t k = 0; k < PointPacket::capacity; k += hn::Lanes(d)) {
+    const auto x = hn::Sub(hn::Load(d, points.points[0] + k), hn::Set(d, leaf.middle.x)),
+               y = hn::Sub(hn::Load(d, points.points[1] + k), hn::Set(d, leaf.middle.y)),
+               z = hn::Sub(hn::Load(d, points.points[2] + k), hn::Set(d, leaf.middle.z));
+    const auto square = hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
+    const auto along =
+        hn::Abs(hn::MulAdd(z, hn::Set(d, leaf.axis.z),
+                           hn::MulAdd(y, hn::Set(d, leaf.axis.y), hn::Mul(x, hn::Set(d, leaf.axis.x)))));
+    const auto across = hn::Sqrt(hn::Max(hn::NegMulAdd(along, along, hn::Mul(square, less)), zero));
+    // The rounding of `along` is in proportion to the distance of the middle.
+    const auto above = hn::Max(
+        hn::NegMulAdd(hn::Sqrt(square), hn::Set(d, 0x1p-20F), hn::Sub(along, hn::Set(d, leaf.height))), zero);
+    const auto beside = hn::Max(hn::Sub(across, hn::Set(d, leaf.radius)), zero);
+    const auto least = hn::Mul(hn::MulAdd(above, above, hn::Mul(beside, beside)), less);
+    near |= mask_bits(d, hn::Le(least, hn::Load(d, points.limits + k))) << k;
+  }
+  return near;
+}
+
+std::uint64_t NearInPacket(PointPacket& points, const LeafCorners& leaf, PacketBounds& squares) {
+  if (PointsNearLeaf(points, leaf) == 0) return 0;
+  const hn::CappedTag<float, PointPacket::capacity> d;
+  std::uint64_t near = 0;
+  for (std::size_t k = 0; k < PointPacket::capacity; k += hn::Lanes(d)) {
+    const auto px = hn::Load(d, points.points[0] + k), py = hn::Load(d, points.points[1] + k),
+               pz = hn::Load(d, points.points[2] + k);
+    auto least = hn::Inf(d);
+    for (std::size_t i = 0; i < leaf.size; ++i) {
+      const auto square = [&](std::size_t corner) HWY_ATTR {
+        const auto x = hn::Sub(px, hn::Set(d, leaf.corners[corner][0][i])),
+                   y = hn::Sub(py, hn::Set(d, leaf.corners[corner][1][i])),
+                   z = hn::Sub(pz, hn::Set(d, leaf.corners[corner][2][i]));
+        return hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
+      };
+      const auto nearest = hn::Min(hn::Min(square(0), square(1)), square(2));
+      least = hn::Min(least, nearest);
+      const auto without_spread = hn::Sub(nearest, hn::Set(d, leaf.spread[i]));
+      hn::StoreU(hn::NegMulAdd(nearest, hn::Set(d, 0x1p-18F), without_spread), d, squares[i].data() + k);
+    }
+    const auto more = hn::Set(d, 1 + 0x1p-18F);
+    const auto reach = hn::MulAdd(hn::Sqrt(least), more, hn::Set(d, 2 * points.slack));
+    const auto limit = hn::Min(hn::Load(d, points.limits + k), hn::Mul(hn::Mul(reach, reach), more));
+    hn::Store(limit, d, points.limits + k);
+    for (std::size_t i = 0; i < leaf.size; ++i) {
+      const bool is_near = !hn::AllFalse(d, hn::Le(hn::LoadU(d, squares[i].data() + k), limit));
+      near |= std::uint64_t{is_near} << i;
+    }
+  }
+  return near;
+}
+
 /// Lower bounds for the boxes from `first` on.
 template <class Tag, class Boxes>
 HWY_INLINE hn::Vec<Tag> bounds_of(Tag d, const RaySlabs& ray, const Boxes& boxes, std::size_t first) {
@@ -100,6 +170,8 @@ namespace supple {
 
 HWY_EXPORT(SquaredDistances);
 HWY_EXPORT(NearTriangles);
+HWY_EXPORT(PacketDistances);
+HWY_EXPORT(NearInPacket);
 HWY_EXPORT(RayBounds);
 HWY_EXPORT(TrianglesOnRay);
 
@@ -108,6 +180,12 @@ void squared_distances(const Aabb& point, const ChildBoxes& boxes, std::array<fl
 }
 std::uint64_t near_triangles(const Aabb& point, const LeafBoxes& boxes, float limit) {
   return HWY_DYNAMIC_DISPATCH(NearTriangles)(point, boxes, limit);
+}
+void squared_distances(const PointPacket& points, const ChildBoxes& boxes, std::array<float, 8>& squares) {
+  HWY_DYNAMIC_DISPATCH(PacketDistances)(points, boxes, squares.data());
+}
+std::uint64_t near_triangles(PointPacket& points, const LeafCorners& leaf, PacketBounds& squares) {
+  return HWY_DYNAMIC_DISPATCH(NearInPacket)(points, leaf, squares);
 }
 void ray_bounds(const RaySlabs& ray, const ChildBoxes& boxes, std::array<double, 8>& bounds) {
   HWY_DYNAMIC_DISPATCH(RayBounds)(ray, boxes, bounds.data());

@@ -39,6 +39,33 @@ void squared_distances(const Aabb& point, const ChildBoxes& boxes, std::array<fl
 /// The triangles of a block whose boxes have such a squared distance of at most `limit`.
 std::uint64_t near_triangles(const Aabb& point, const LeafBoxes& boxes, float limit);
 
+/// The corners of the triangles of a block, rounded; those of inert triangles are infinite.
+struct alignas(64) LeafCorners {
+  float corners[3][3][leaf_block];  ///< by corner and axis
+  /// A third of the square of the longest edge. The square of the distance of a point to any point of the
+  /// triangle is at least the least of those to its corners minus this.
+  float spread[leaf_block];
+  std::uint32_t size;
+  /// A cylinder around the corners: its middle, the direction of its axis or 0, its radius and half its
+  /// height.
+  Vec3f middle, axis;
+  float radius, height;
+};
+/// Points whose nearest triangles are searched for together, rounded, as the boxes of an object see them.
+struct alignas(64) PointPacket {
+  static constexpr std::size_t capacity = 8;
+  float points[3][capacity];  ///< by axis
+  float limits[capacity];     ///< squares of the distances of interest, with what rounding changes
+  float slack;                ///< more than rounding changes a distance
+};
+/// Writes the least squared distance of a point and each of eight children, infinite where it exceeds the
+/// limits of all points.
+void squared_distances(const PointPacket& points, const ChildBoxes& boxes, std::array<float, 8>& squares);
+/// Limits each point to its nearest corner. Returns the triangles that are within the limit of a point, and
+/// writes squares of lower bounds for these.
+using PacketBounds = std::array<std::array<float, PointPacket::capacity>, leaf_block>;
+std::uint64_t near_triangles(PointPacket& points, const LeafCorners& leaf, PacketBounds& squares);
+
 /// A ray as the boxes of an object see it: its origin between two points, and the reciprocals of its
 /// direction. An axis along which the direction is too small or too large for reciprocals is `unlimited`.
 struct RaySlabs {

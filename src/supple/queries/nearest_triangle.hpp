@@ -29,17 +29,18 @@ inline ElementPoints point_and_triangle(const Vec3d& point, const TrianglePoints
 /// The nearest triangle of a point so far.
 class NearestTriangle {
  public:
-  /// After a request to stop, it decides nothing more.
+  /// After a request to stop, it decides nothing more. The candidates are triangles that may be the nearest,
+  /// among them all within `limit`, where that is less than the distance.
   NearestTriangle(std::span<const QueriedObject> objects, const Vec3d& point, double max_distance,
-                  const StopSignal& stop, std::vector<NearTriangle>& candidates, PointsBlock& block)
+                  const StopSignal& stop, std::vector<NearTriangle>& candidates, PointsBlock& block,
+                  double limit = std::numeric_limits<double>::infinity())
       : objects_(objects),
         point_(point),
         max_distance_(max_distance),
         stop_(stop),
         candidates_(candidates),
         block_(block) {
-    candidates_.clear();
-    set_limit(max_distance);
+    set_limit(std::min(limit, max_distance));
   }
 
   /// Triangles farther away than this are not of interest.
@@ -61,7 +62,7 @@ class NearestTriangle {
     }
     if (count == 0) return;
     bounded_ += count;
-    bound_distances(point_, {objects_[index].view.arrays, objects_[index].view.translation},
+    bound_distances({&point_, 1}, {objects_[index].view.arrays, objects_[index].view.translation},
                     std::span(list).first(count), lower.data(), upper.data());
     const double least = *std::min_element(upper.begin(), upper.begin() + static_cast<std::ptrdiff_t>(count));
     if (least < limit_) set_limit(least);

@@ -228,8 +228,8 @@ void ObjectQueries::visit_leaf(std::uint32_t index, const QueriedObject& object,
                                std::uint32_t begin, std::uint32_t end, const Chosen& chosen,
                                const Visit& visit) {
   for (; begin < end && !stop_.stop_requested(); begin += leaf_block) {
-    const LeafBoxes& boxes =
-        recent_.boxes_of(index, object.leaves(), leaf, begin, std::min(begin + leaf_block, end));
+    const LeafBoxes& boxes = recent_.block_of(index, object.leaves(), leaf, begin,
+                                              std::min(begin + leaf_block, end), load_leaf_boxes);
     for (std::uint64_t left = chosen(boxes); left != 0; left &= left - 1)
       visit(begin + static_cast<std::uint32_t>(std::countr_zero(left)));
   }
@@ -239,11 +239,13 @@ void ObjectQueries::start(const StopSignal& stop) {
   stop_ = stop;
   last_nearest_.reset();
   recent_.clear();
+  recent_corners_.clear();
 }
 
 std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObject> objects,
                                                     const Vec3d& point, double max_distance) {
   if (!is_finite(point)) return {};
+  candidates_.clear();
   NearestTriangle nearest(objects, point, max_distance, stop_, candidates_, block_);
   const auto bound_of = [&](const Aabb& box) { return distance_bound(point, box); };
   if (last_nearest_) nearest.limit_to(last_nearest_->corners);
@@ -272,8 +274,8 @@ std::optional<FoundTriangle> ObjectQueries::nearest(std::span<const QueriedObjec
         [&] { return stop_.stop_requested() ? -1 : double{nearest.squared_limit()}; },
         [&](std::uint32_t leaf, std::uint32_t begin, std::uint32_t end) {
           for (; begin < end; begin += leaf_block) {
-            const LeafBoxes& boxes =
-                recent_.boxes_of(index, object.leaves(), leaf, begin, std::min(begin + leaf_block, end));
+            const LeafBoxes& boxes = recent_.block_of(index, object.leaves(), leaf, begin,
+                                                      std::min(begin + leaf_block, end), load_leaf_boxes);
             nearest.consider(index, begin, near_triangles(seen, boxes, nearest.squared_limit()));
           }
         });

@@ -84,6 +84,9 @@ class ObjectQueries {
   /// triangle is nearer.
   std::optional<FoundTriangle> nearest(std::span<const QueriedObject> objects, const Vec3d& point,
                                        double max_distance);
+  /// The same for at most `PointPacket::capacity` points, which are best close to each other.
+  void nearest(std::span<const QueriedObject> objects, std::span<const Vec3d> points, double max_distance,
+               std::span<std::optional<FoundTriangle>> found);
   /// How many triangles `nearest` and the rays have decided exactly.
   std::uint64_t decided() const { return decided_; }
   /// How many triangles `nearest` has bounded.
@@ -101,6 +104,7 @@ class ObjectQueries {
   Containment inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point);
 
  private:
+  bool bound_triangles(const QueriedObject& object, std::span<const Vec3d> points, std::span<double> limits);
   template <class Chosen, class Visit>
   void visit_leaf(std::uint32_t index, const QueriedObject& object, std::uint32_t leaf, std::uint32_t begin,
                   std::uint32_t end, const Chosen& chosen, const Visit& visit);
@@ -128,7 +132,13 @@ class ObjectQueries {
   PointsBlock block_{};  // of the nearest triangle
   OrderedDescent descent_;
   std::vector<std::uint32_t> nodes_;
-  RecentLeafBoxes recent_;
+  RecentLeaves<LeafBoxes> recent_;
+  RecentLeaves<LeafCorners> recent_corners_;
+  // Of a packet of points: triangles with the numbers of points, and their bounds; the candidates of a point.
+  std::vector<TrianglePair> near_;
+  std::vector<float> squares_;
+  std::vector<double> lower_, upper_;
+  std::array<std::vector<NearTriangle>, PointPacket::capacity> of_points_;
   std::vector<std::pair<double, std::uint32_t>> order_;
 };
 

@@ -129,8 +129,13 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
     std::array<std::optional<ClosestPoint>, DistanceBatch::capacity> answers;
     for (std::size_t k = 0; k < part.size(); ++k) gathered[k] = points[part[k].triangle];
     std::size_t count = 0;
+    std::array<std::optional<FoundTriangle>, DistanceBatch::capacity> triangles;
+    for (std::size_t k = 0; k < part.size(); k += PointPacket::capacity)
+      worker.queries.nearest(use->objects,
+                             std::span(gathered).subspan(k, std::min(PointPacket::capacity, part.size() - k)),
+                             options.max_distance, std::span(triangles).subspan(k));
     for (std::size_t k = 0; k < part.size(); ++k) {
-      const auto nearest = worker.queries.nearest(use->objects, gathered[k], options.max_distance);
+      const auto& nearest = triangles[k];
       if (!nearest) continue;
       const QueriedObject& object = use->objects[nearest->object];
       const bool is_inside =

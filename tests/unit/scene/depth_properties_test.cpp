@@ -61,6 +61,13 @@ TEST(DepthProperties, OfBodiesWithFlushFaces) {
   }
 }
 
+/// Most of the contacts only touch: beside them, no point is inside both.
+TEST(DepthProperties, OfCratesThatMostlyTouch) {
+  const solids::SolidPair pair{solids::box_of({-24, -34, 12}, {0, -20, 16}, 2),
+                               solids::box_of({-12, -27, 0}, {0, 0, 18}, 3)};
+  EXPECT_EQ(solids::PairChecker(pair).fault(), "");
+}
+
 /// Convex bodies in front of and behind a plane, with a vertex, an edge or a face in it.
 TEST(DepthProperties, OfSolidsThatOnlyTouch) {
   std::array<int, 3> curves_of_touching{};  // by the least number of corners in the plane

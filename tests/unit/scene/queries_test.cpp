@@ -649,6 +649,43 @@ TEST(QueriesOfAScene, AreTheSameForAnyNumberOfThreads) {
 }
 
 /// The parameters of such rays overflow on the way, but their boxes must not be excluded.
+/// Points descend together into one object, and alone into several.
+TEST(QueriesOfAScene, AnswerPointsOfOneObjectAsThoseOfTwo) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  RandomNumbers random(9);
+  // Many triangles are at the same distance, and some have no area.
+  const auto on_lattice = [](Vec3d p) {
+    return Vec3d{std::round(8 * p.x), std::round(8 * p.y), std::round(8 * p.z)} / 8.0;
+  };
+  for (const double scale : {1.0, 0x1p-300, 0x1p40}) {
+    for (const double offset : {0.0, 3.0, 0x1p22}) {
+      TriangleMesh ball = make_icosphere(16);
+      for (Vec3d& p : ball.positions) p = scale * on_lattice(p);
+      ball.positions[7].x = std::numeric_limits<double>::quiet_NaN();
+      const Vec3d translation = scale * offset * Vec3d{1, 0.5, -1};
+      std::vector<Vec3d> points{{infinity, 0, 0}};
+      for (int i = 0; i < 500; ++i) {
+        const Vec3d p = random.vector(1.5);
+        points.push_back(translation + scale * p);
+        points.push_back(translation + scale * on_lattice(p));
+      }
+      Scene one, two;
+      for (Scene* const scene : {&one, &two})
+        scene->set_transform(scene->add(ball), {.translation = translation});
+      const Vec3d far = translation + scale * Vec3d{1000, 0, 0};
+      two.add({.name = {},
+               .positions = {far, far + scale * Vec3d{1, 0, 0}, far + scale * Vec3d{0, 1, 0}},
+               .triangles = {{0, 1, 2}}});
+      for (const double most : {infinity, 0.125 * scale}) {
+        std::vector<std::optional<ClosestPoint>> of_one(points.size()), of_two(points.size());
+        one.closest(points, of_one, {.max_distance = most});
+        two.closest(points, of_two, {.max_distance = most});
+        EXPECT_TRUE(of_one == of_two) << scale << " " << offset << " " << most;
+      }
+    }
+  }
+}
+
 TEST(Cast, WithDirectionsOfExtremeSizes) {
   Scene scene;
   scene.add(TriangleMesh{"far", {{1, -1, -1}, {1, 3, -1}, {1, -1, 3}}, {{0, 1, 2}}});

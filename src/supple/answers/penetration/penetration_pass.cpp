@@ -255,6 +255,7 @@ bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parall
   constexpr std::size_t grain = DistanceBatch::capacity;
   parallel.for_ranges(new_penetrations_.size(), grain,
                       [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+                        workers_[w].queries.start();
                         for (; begin < end && !stop.stop_requested(); begin += grain)
                           find_depths(begin, std::min(begin + grain, end), workers_[w]);
                       });
@@ -265,19 +266,26 @@ bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parall
 void PenetrationPass::find_depths(std::size_t begin, std::size_t end, Worker& worker) {
   std::array<FoundFeatures, DistanceBatch::capacity> found;
   std::array<ElementDistance, DistanceBatch::capacity> distances;
-  ObjectId last_outer;
-  for (std::size_t i = begin; i < end; ++i) {
-    Penetration& penetration = found_.penetrations[new_penetrations_[i]];
-    const PenetratedObject& outer = objects_[penetration.object_b.index];
-    if (i == begin || penetration.object_b != last_outer) worker.queries.start();
-    last_outer = penetration.object_b;
+  const auto penetration_of = [&](std::size_t i) -> Penetration& {
+    return found_.penetrations[new_penetrations_[i]];
+  };
+  for (std::size_t i = begin; i < end;) {
+    const ObjectId outer = penetration_of(i).object_b;
+    if (i > 0 && penetration_of(i - 1).object_b != outer) worker.queries.start();
+    std::array<Vec3d, PointPacket::capacity> points;
+    std::array<std::optional<FoundTriangle>, PointPacket::capacity> nearest;
+    std::size_t count = 0;
+    for (; count < points.size() && i + count < end && penetration_of(i + count).object_b == outer; ++count) {
+      const Penetration& penetration = penetration_of(i + count);
+      points[count] = objects_[penetration.object_a.index].surface.position(penetration.vertex);
+    }
+    worker.queries.nearest(std::span(&objects_[outer.index].queried, 1), std::span(points).first(count),
+                           std::numeric_limits<double>::infinity(), nearest);
     // There is one, because the vertex is inside.
-    const SurfaceView& inner = objects_[penetration.object_a.index].surface;
-    const FoundTriangle nearest =
-        *worker.queries.nearest(std::span(&outer.queried, 1), inner.position(penetration.vertex),
-                                std::numeric_limits<double>::infinity());
-    penetration.triangle = nearest.id;
-    found[i - begin] = {nearest.elements(), {}};
+    for (std::size_t k = 0; k < count; ++k, ++i) {
+      penetration_of(i).triangle = nearest[k]->id;
+      found[i - begin] = {nearest[k]->elements(), {}};
+    }
   }
   worker.distances.find(std::span(found).first(end - begin), distances);
   for (std::size_t i = begin; i < end; ++i) {

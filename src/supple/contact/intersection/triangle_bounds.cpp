@@ -55,14 +55,19 @@ HWY_INLINE Vector3<Tag> rough_closest(const Corners<Tag>& c, hn::Mask<Tag>& is_i
   return {sum(c[0].x, u.x, v.x), sum(c[0].y, u.y, v.y), sum(c[0].z, u.z, v.z)};
 }
 
-void BoundDistances(const Vec3d& point, const PlacedTriangles& triangles, const TrianglePair* list,
+void BoundDistances(const Vec3d* points, const PlacedTriangles& triangles, const TrianglePair* list,
                     std::size_t count, double* lower, double* upper) {
   using Tag = hn::CappedTag<double, 8>;
   const Tag d;
-  const Vector3<Tag> p{hn::Set(d, point.x), hn::Set(d, point.y), hn::Set(d, point.z)};
   for_each_vector(d, list, count, [&](std::size_t first, const TrianglePair* part) HWY_ATTR {
     Corners<Tag> corners;
     read_corners<&TrianglePair::a, Tag>(triangles, part, corners);
+    HWY_ALIGN double coordinates[3][hn::MaxLanes(Tag())];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      for (int axis = 0; axis < 3; ++axis) coordinates[axis][i] = points[part[i].b][axis];
+    }
+    const Vector3<Tag> p{hn::Load(d, coordinates[0]), hn::Load(d, coordinates[1]),
+                         hn::Load(d, coordinates[2])};
     for (auto& corner : corners) corner = subtract<Tag>(corner, p);
     hn::Mask<Tag> is_in_triangle;
     const Vector3<Tag> normal = rough_closest<Tag>(corners, is_in_triangle);
@@ -95,9 +100,9 @@ namespace supple {
 
 HWY_EXPORT(BoundDistances);
 
-void bound_distances(const Vec3d& point, const PlacedTriangles& triangles, std::span<const TrianglePair> list,
-                     double* lower, double* upper) {
-  HWY_DYNAMIC_DISPATCH(BoundDistances)(point, triangles, list.data(), list.size(), lower, upper);
+void bound_distances(std::span<const Vec3d> points, const PlacedTriangles& triangles,
+                     std::span<const TrianglePair> list, double* lower, double* upper) {
+  HWY_DYNAMIC_DISPATCH(BoundDistances)(points.data(), triangles, list.data(), list.size(), lower, upper);
 }
 
 }  // namespace supple

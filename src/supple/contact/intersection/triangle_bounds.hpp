@@ -7,11 +7,11 @@
 
 namespace supple {
 
-/// Writes two numbers for each pair, between which the distance of the point and triangle `a` of the pair is.
+/// Writes two numbers for each pair, between which the distance of triangle `a` and point `b` of the pair is.
 /// They are almost always nearly equal: the distance of a plane beyond which the triangle lies, and that of a
 /// point of the triangle. Where rounding leaves nothing certain, they are 0 and infinite. Both arrays have
 /// space for a multiple of eight numbers.
-void bound_distances(const Vec3d& point, const PlacedTriangles& triangles, std::span<const TrianglePair> list,
-                     double* lower, double* upper);
+void bound_distances(std::span<const Vec3d> points, const PlacedTriangles& triangles,
+                     std::span<const TrianglePair> list, double* lower, double* upper);
 
 }  // namespace supple

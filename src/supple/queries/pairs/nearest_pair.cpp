@@ -229,15 +229,15 @@ void NearestPairSearch::test_leaves(const Entry& leaves) {
   for (std::uint32_t begin_a = node_a.first_triangle[leaves.child_a]; begin_a < end_a;
        begin_a += leaf_block) {
     // A copy, because the next call may overwrite it.
-    const LeafBoxes boxes_a =
-        recent_.boxes_of(0, a_->leaves(), leaf_a, begin_a, std::min(begin_a + leaf_block, end_a));
+    const LeafBoxes boxes_a = recent_.block_of(0, a_->leaves(), leaf_a, begin_a,
+                                               std::min(begin_a + leaf_block, end_a), load_leaf_boxes);
     const std::uint64_t near_a =
         within_limit(*a_, begin_a, near_triangles(box_b, boxes_a, squared_limit_), placed_b);
     if (near_a == 0) continue;
     for (std::uint32_t begin_b = node_b.first_triangle[leaves.child_b]; begin_b < end_b;
          begin_b += leaf_block) {
-      const LeafBoxes& boxes_b =
-          recent_.boxes_of(1, b_->leaves(), leaf_b, begin_b, std::min(begin_b + leaf_block, end_b));
+      const LeafBoxes& boxes_b = recent_.block_of(1, b_->leaves(), leaf_b, begin_b,
+                                                  std::min(begin_b + leaf_block, end_b), load_leaf_boxes);
       const std::uint64_t near_b =
           within_limit(*b_, begin_b, near_triangles(box_a, boxes_b, squared_limit_), placed_a);
       if (near_b != 0) test_blocks(boxes_a, near_a, begin_a, boxes_b, near_b, begin_b);
@@ -263,7 +263,7 @@ std::uint64_t NearestPairSearch::within_limit(const QueriedObject& object, std::
   std::size_t count = 0;
   for (std::uint64_t left = triangles; left != 0; left &= left - 1)
     list[count++] = {begin + static_cast<std::uint32_t>(std::countr_zero(left)), 0};
-  bound_distances(middle, {object.view.arrays, object.view.translation}, std::span(list).first(count),
+  bound_distances({&middle, 1}, {object.view.arrays, object.view.translation}, std::span(list).first(count),
                   lower.data(), upper.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (lower[i] * (1 - 0x1p-40) - radius > limit_) triangles &= ~(std::uint64_t{1} << (list[i].a - begin));

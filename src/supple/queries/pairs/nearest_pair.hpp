@@ -113,7 +113,7 @@ class NearestPairSearch {
   std::vector<Entry> stack_;
   RecentElements<bool> farther_;  // elements that are farther apart than the nearest
   Candidates vertices_and_faces_, edges_;
-  RecentLeafBoxes recent_;
+  RecentLeaves<LeafBoxes> recent_;
   ObjectQueries queries_;
 };
 
