@@ -208,9 +208,9 @@ class SuppleNearCloth : public Contestant<ClothStep> {
   PairDigest pairs() const override {
     PairDigest digest;
     for (const ProximityPair& pair : scene_.result().proximity_pairs) {
-      if (pair.kind_b == FeatureKind::face)
+      if (pair.kind_a == FeatureKind::vertex)
         digest.add(pair.element_a[0], pair.element_b[0] + (std::uint64_t{1} << 32));
-      else
+      else if (pair.kind_b == FeatureKind::edge)  // crossings are not listed by the others
         digest.add(number_of(edges_, pair.element_a), number_of(edges_, pair.element_b));
     }
     return digest;

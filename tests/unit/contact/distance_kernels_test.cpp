@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "contact/distance/edge_face_crossing.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random.hpp"
 
@@ -130,6 +131,39 @@ TEST(DistanceKernels, ClassifyDecidesOrdinaryElementsAndParallelEdgesThatAreApar
       }
     }
   }
+}
+
+TEST(DistanceKernels, CrossingsAgreeWithTheExactTest) {
+  AnyElements any(4);
+  std::size_t unknown = 0, crossing = 0, total = 0;
+  for (int round = 0; round < 600; ++round) {
+    PointsBlock block;
+    std::array<std::array<Vec3d, 5>, 64> points;
+    for (std::size_t k = 0; k < 64; ++k) {
+      const std::array<Vec3d, 4> p = any.next(k % 2 == 0).points;
+      // A fifth point anywhere, on the edge, in the plane of the edge and a corner, or equal to another one.
+      const double part = any.below(4) == 0 ? 0 : any.number();
+      points[k] = {p[0], p[1], p[2], p[3], p[any.below(4)] + part * (p[any.below(4)] - p[any.below(4)])};
+      if (any.below(2) == 0) std::swap(points[k][any.below(4)], points[k][4]);
+      for (std::size_t i = 0; i < 5; ++i) block.set(i, k, points[k][i]);
+    }
+    for_each_target([&](const char* target) {
+      std::array<FeatureCode, 64> codes;
+      classify_crossings(block, 64, codes.data());
+      for (std::size_t k = 0; k < 64; ++k, ++total) {
+        const auto& [first, last, a, b, c] = points[k];
+        bool used_exact = false;
+        if (codes[k] == FeatureCode::unknown)
+          ++unknown;
+        else
+          ASSERT_EQ(codes[k] == FeatureCode::crosses, edge_crosses_face({first, last}, {a, b, c}, used_exact))
+              << target;
+        crossing += codes[k] == FeatureCode::crosses;
+      }
+    });
+  }
+  EXPECT_GT(crossing, total / 400);
+  EXPECT_LT(unknown, total * 2 / 3);
 }
 
 bool same_bits(double a, double b) {

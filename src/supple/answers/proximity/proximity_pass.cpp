@@ -1,6 +1,7 @@
 #include "answers/proximity/proximity_pass.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <span>
 #include <utility>
@@ -13,8 +14,9 @@ namespace supple {
 namespace {
 
 constexpr std::size_t block_size = PointsBlock::capacity;
-constexpr std::size_t least_merge = 65536;  // candidates, 6 MB; fewer with a limit
-constexpr std::uint32_t no_job = ~std::uint32_t{0};
+constexpr std::size_t least_merge = 65536;  // candidates, 2 MB; fewer with a limit
+// Of a vertex and an edge or a point, as a face with equal corners.
+constexpr auto first_vertices = static_cast<FeatureCode>(1), first_edge = static_cast<FeatureCode>(4);
 
 template <std::size_t count>
 ElementIds element_of(const MovingObject& object, std::span<const std::uint32_t, count> vertices,
@@ -26,24 +28,32 @@ ElementIds element_of(const MovingObject& object, std::span<const std::uint32_t,
 
 PairElement with_points_of(const MovingObject& object, const ElementIds& element,
                            const std::uint32_t* vertices) {
-  std::array<Vec3d, 3> points{};
-  for (std::size_t i = 0; i < element.count; ++i) points[i] = placed((*object.end)[vertices[i]], object);
-  return {element, points};
+  PairElement result(element);
+  for (std::size_t i = 0; i < element.count; ++i)
+    result.points[i] = placed((*object.end)[vertices[element.corners[i]]], object);
+  return result;
 }
 
 /// Sets one vertex of each pair.
-void set_points(const MovingObject& object, std::span<const std::array<std::uint32_t, 4>> vertices,
+template <std::size_t size>
+void set_points(const MovingObject& object, std::span<const std::array<std::uint32_t, size>> vertices,
                 std::size_t vertex, PointsBlock& block) {
-  const auto set = [&](const auto& positions) {
+  const auto set = [&, moved = object.view.translation](const auto& positions) {
     for (std::size_t k = 0; k < vertices.size(); ++k) {
       const auto* const p = positions[vertices[k][vertex]];
-      block.set(vertex, k, placed(Vec3d{p[0], p[1], p[2]}, object));
+      block.set(vertex, k, Vec3d{p[0], p[1], p[2]} + moved);
     }
   };
-  if (object.end->is_double())
-    set(object.end->doubles());
-  else
-    set(object.end->floats());
+  if (!object.end->is_double()) return set(object.end->floats());
+  const VertexArray<double> positions = object.end->doubles();
+  if (object.view.translation != Vec3d{}) return set(positions);
+  // Four scalars from each vertex on are readable.
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    std::memcpy(block.points[vertex][k], positions[vertices[k][vertex]], sizeof block.points[vertex][k]);
+}
+
+std::array<std::uint32_t, 2> in_order(std::uint32_t p, std::uint32_t q) {
+  return {std::min(p, q), std::max(p, q)};
 }
 
 /// Renumbers the vertices of features: vertex i becomes `places[i]`.
@@ -69,9 +79,6 @@ void ProximityWorker::start() {
   merge_at = 0;
   is_full = false;
   decisions.clear();
-  FoundPair none;
-  none.job = no_job;
-  recent.fill(none);
 }
 
 bool ProximityPass::run(const PassInput& input, std::span<const MovingObject> objects,
@@ -143,49 +150,70 @@ void ProximityPass::test_candidates(std::uint32_t job, ElementPairKind kind,
     const auto part = candidates.first(std::min(block_size, candidates.size()));
     for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
     for (std::size_t i = 0; i < 4; ++i)
-      set_points(*objects[i], std::span(vertices).first(part.size()), i, worker.block);
+      set_points<4>(*objects[i], std::span(vertices).first(part.size()), i, worker.block);
     classify(worker.block, part.size(), are_edges, reach, codes.data());
     for (std::size_t k = 0; k < part.size(); ++k) {
       if (codes[k] == FeatureCode::apart || !may_touch_by_groups(objects, vertices[k], are_edges)) continue;
-      add(job, kind, part[k], codes[k], worker);
+      add(job, kind, part[k], vertices[k], codes[k], worker);
     }
   }
 }
 
-void ProximityPass::add(std::uint32_t job, ElementPairKind kind, ElementPair candidate, FeatureCode code,
-                        Worker& worker) {
-  const bool are_edges = kind == ElementPairKind::edge_edge;
-  const Elements elements = elements_of(job, kind, candidate);
-  const auto& [first, second, vertices, is_swapped] = elements;
-  std::optional<ClosestFeatures> features;
-  const bool is_extra = first.count + second.count < 4;  // an edge or a point of no triangle
-  if (code == FeatureCode::unknown || is_extra) {
-    const auto [first_points, second_points] = with_points(job, kind, elements);
-    const double reach = reach_of_margins(objects_[jobs_[job].a].margin, objects_[jobs_[job].b].margin);
-    const ElementPoints points = points_of(first_points, second_points);
-    if (std::exchange(worker.job_of_decisions, job) != job) worker.decisions.clear();
-    ProximityWorker::Decision decision;
-    if (const auto* const known = worker.decisions.find(points)) {
-      decision = *known;
-    } else {
-      decision.features = closest_features_within(points, reach, decision.used_exact);
-      worker.decisions.store(points, decision);
-    }
-    worker.stats.exact_fallbacks += decision.used_exact ? 1 : 0;
-    features = decision.features;
-    if (!features) return;
-  } else {
-    std::array<std::uint8_t, 4> places{};
-    for (std::uint8_t i = 0; i < first.count; ++i) places[first.corners[i] + (is_swapped ? 2u : 0u)] = i;
-    for (std::uint8_t i = 0; i < second.count; ++i)
-      places[second.corners[i] + (is_swapped ? 0u : first.count)] =
-          static_cast<std::uint8_t>(first.count + i);
-    features = renumbered(features_of_code(code, are_edges), places);
+void ProximityPass::add(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
+                        const std::array<std::uint32_t, 4>& vertices, FeatureCode code, Worker& worker) {
+  const MovingObject &a = objects_[jobs_[job].a], &b = objects_[jobs_[job].b];
+  const bool are_edges = kind == ElementPairKind::edge_edge,
+             is_swapped = kind == ElementPairKind::face_vertex;
+  const MovingObject &first = is_swapped ? b : a, &last = is_swapped ? a : b;
+  const std::uint32_t triangle = are_edges ? 0 : last.triangle_ids[is_swapped ? candidate.a : candidate.b];
+  const bool is_extra = !are_edges && triangle >= last.face_count;  // an edge or a point of no triangle
+  if (code == FeatureCode::unknown || is_extra) code = decide(job, kind, candidate, worker);
+  if (code == FeatureCode::apart) return;
+  FeatureCode listed = code;
+  if (search_.listing == ProximityListing::elements)
+    listed = !is_extra ? FeatureCode::interiors : vertices[1] == vertices[2] ? first_vertices : first_edge;
+  const auto [p, p_end, q, q_end] = ends_of_code(listed, are_edges);
+  PairName name{static_cast<FeatureKind>(p != p_end), static_cast<FeatureKind>(q != q_end),
+                in_order(first.vertex_ids[vertices[p]], first.vertex_ids[vertices[p_end]]),
+                in_order(last.vertex_ids[vertices[q]], last.vertex_ids[vertices[q_end]])};
+  if (!are_edges && listed == FeatureCode::interiors) {
+    name.kind_b = FeatureKind::face;
+    name.element_b = {triangle, triangle};
   }
   const auto candidate_kind = static_cast<CandidateKind>(kind);
-  keep({job, name_of_pair(first, second, *features, order_of(job, candidate_kind), search_.listing),
-        candidate_kind, *features, candidate},
-       worker);
+  name.put_in_order(order_of(job, candidate_kind));
+  keep({job, name, candidate_kind, code, candidate}, worker);
+}
+
+/// What only exact arithmetic decides.
+FeatureCode ProximityPass::decide(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
+                                  Worker& worker) const {
+  const Elements elements = elements_of(job, kind, candidate);
+  const auto [first, second] = with_points(job, kind, elements);
+  const ElementPoints points = points_of(first, second);
+  if (std::exchange(worker.job_of_decisions, job) != job) worker.decisions.clear();
+  ProximityWorker::Decision decision;
+  if (const auto* const known = worker.decisions.find(points)) {
+    decision = *known;
+  } else {
+    const double reach = reach_of_margins(objects_[jobs_[job].a].margin, objects_[jobs_[job].b].margin);
+    decision.features = closest_features_within(points, reach, decision.used_exact);
+    worker.decisions.store(points, decision);
+  }
+  worker.stats.exact_fallbacks += decision.used_exact ? 1 : 0;
+  if (!decision.features) return FeatureCode::apart;
+  std::uint8_t code = 0;
+  while (elements.features_of(static_cast<FeatureCode>(code)) != *decision.features) ++code;
+  return static_cast<FeatureCode>(code);
+}
+
+/// In the numbering of `ElementPoints`.
+ClosestFeatures ProximityPass::Elements::features_of(FeatureCode code) const {
+  std::array<std::uint8_t, 4> places{};
+  for (std::uint8_t i = 0; i < first.count; ++i) places[first.corners[i] + (is_swapped ? 2u : 0u)] = i;
+  for (std::uint8_t i = 0; i < second.count; ++i)
+    places[second.corners[i] + (is_swapped ? 0u : first.count)] = static_cast<std::uint8_t>(first.count + i);
+  return renumbered(features_of_code(code, first.count == 2), places);
 }
 
 ProximityPass::Crossing ProximityPass::crossing_of(std::uint32_t job, CandidateKind kind,
@@ -200,35 +228,52 @@ ProximityPass::Crossing ProximityPass::crossing_of(std::uint32_t job, CandidateK
 
 void ProximityPass::test_crossings(std::uint32_t job, CandidateKind kind,
                                    std::span<const ElementPair> candidates, Worker& worker) {
-  for (const ElementPair& candidate : candidates) {
-    const Crossing crossing = crossing_of(job, kind, candidate);
-    const auto& [of_edge, of_face, edge, face, triangle] = crossing;
-    if (triangle >= of_face.face_count) continue;  // an edge or a point of no triangle
-    const auto position = [](const MovingObject& object, std::uint32_t vertex) {
-      return placed((*object.end)[vertex], object);
-    };
-    bool used_exact = false;
-    const bool crosses = edge_crosses_face(
-        {position(of_edge, edge[0]), position(of_edge, edge[1])},
-        {position(of_face, face[0]), position(of_face, face[1]), position(of_face, face[2])}, used_exact);
-    worker.stats.exact_fallbacks += used_exact ? 1 : 0;
-    if (!crosses) continue;
-    const auto [first, second] = with_points(crossing);
-    if (may_touch_by_groups(of_edge.groups, std::span(first.ids).first(2), of_face.groups, second.ids))
-      keep({job, name_of_crossing(first, second, order_of(job, kind)), kind, {}, candidate}, worker);
+  std::array<std::array<std::uint32_t, 5>, block_size> vertices;
+  std::array<FeatureCode, block_size> codes;
+  for (; !candidates.empty() && !stop_.stop_requested();
+       candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
+    const auto part = candidates.first(std::min(block_size, candidates.size()));
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      const auto [of_edge, of_face, edge, face, triangle] = crossing_of(job, kind, part[k]);
+      vertices[k] = {edge[0], edge[1], face[0], face[1], face[2]};
+    }
+    const Crossing any = crossing_of(job, kind, part[0]);
+    for (std::size_t i = 0; i < 5; ++i)
+      set_points<5>(i < 2 ? any.of_edge : any.of_face, std::span(vertices).first(part.size()), i,
+                    worker.block);
+    classify_crossings(worker.block, part.size(), codes.data());
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      if (codes[k] == FeatureCode::apart) continue;
+      const Crossing crossing = crossing_of(job, kind, part[k]);
+      const auto& [of_edge, of_face, edge, face, triangle] = crossing;
+      if (triangle >= of_face.face_count) continue;  // an edge or a point of no triangle
+      const auto [first, second] = with_points(crossing);
+      bool used_exact = false;
+      const bool crosses =
+          codes[k] == FeatureCode::crosses ||
+          edge_crosses_face({first.points[0], first.points[1]}, corners_of(second), used_exact);
+      worker.stats.exact_fallbacks += used_exact ? 1 : 0;
+      if (!crosses ||
+          !may_touch_by_groups(of_edge.groups, std::span(first.ids).first(2), of_face.groups, second.ids))
+        continue;
+      PairName name{first.kind, second.kind, first.name(), second.name()};
+      name.put_in_order(order_of(job, kind));
+      keep({job, name, kind, codes[k], part[k]}, worker);
+    }
   }
 }
 
 /// Adds the candidate, unless it is one of the recent ones again or comes after all pairs of the result.
-void ProximityPass::keep(const FoundPair& found, Worker& worker) const {
-  if (worker.is_full && worker.last < found) return;
-  const auto& [kind_a, kind_b, element_a, element_b] = found.name;
-  const std::uint32_t hash = (element_a[0] * 31 + element_a[1]) * 31 + element_b[0] * 7 + element_b[1];
-  FoundPair& recent = worker.recent[hash % worker.recent.size()];
-  if (recent == found) return;
-  recent = found;
-  worker.found.push_back(found);
-  if (worker.found.size() >= std::max(worker.merge_at, least_merge_)) merge(worker);
+void ProximityPass::keep(const FoundPair& pair, Worker& worker) const {
+  if (worker.is_full && worker.last < pair) return;
+  std::vector<FoundPair>& found = worker.found;
+  const std::uint32_t hash = pair.hash();
+  auto& [of_recent, recent] = worker.recent[hash % worker.recent.size()];
+  if (of_recent == hash && recent < found.size() && found[recent] == pair) return;
+  of_recent = hash;
+  recent = static_cast<std::uint32_t>(found.size());
+  found.push_back(pair);
+  if (found.size() >= std::max(worker.merge_at, least_merge_)) merge(worker);
 }
 
 /// Keeps one candidate of each name, of the first `max_pairs_` names and one more, which shows that there are
@@ -247,7 +292,7 @@ void ProximityPass::merge(Worker& worker) const {
     worker.runs.back().end = i + 1;
   }
   worker.run_first = static_cast<std::uint32_t>(found.size());
-  worker.merge_at = 2 * found.size();
+  worker.merge_at = 8 * found.size();  // few are found again
 }
 
 PairOrder ProximityPass::order_of(std::uint32_t job, CandidateKind kind) const {
@@ -337,9 +382,10 @@ void ProximityPass::compute_pairs(std::uint32_t job, std::span<const FoundPair> 
       continue;
     }
     const auto kind = static_cast<ElementPairKind>(pair.kind);
-    worker.elements[count] = with_points(job, kind, elements_of(job, kind, pair.candidate));
+    const Elements elements = elements_of(job, kind, pair.candidate);
+    worker.elements[count] = with_points(job, kind, elements);
     const auto& [first, second] = worker.elements[count];
-    worker.features[count] = {points_of(first, second), pair.features};
+    worker.features[count] = {points_of(first, second), elements.features_of(pair.code)};
     places[count++] = i;
   }
   worker.batch.compute(std::span(worker.features).first(count), worker.distances,

@@ -34,15 +34,22 @@ struct FoundPair {
   std::uint32_t job = 0;
   PairName name;
   CandidateKind kind{};
-  ClosestFeatures features;  // of the elements of `ProximityPass::elements_of`
+  FeatureCode code{};
   ElementPair candidate;
 
-  /// An edge and a face; `features` says nothing.
+  /// An edge and a face; `code` says nothing.
   bool crosses() const { return kind > CandidateKind::edge_edge; }
   bool operator<(const FoundPair& other) const {
     return job != other.job ? job < other.job : name < other.name;
   }
   bool operator==(const FoundPair& other) const { return job == other.job && name == other.name; }
+  std::uint32_t hash() const {
+    std::uint64_t hash = job;
+    for (const std::uint32_t id :
+         {name.element_a[0], name.element_a[1], name.element_b[0], name.element_b[1]})
+      hash = (hash ^ id) * 0x9e3779b97f4a7c15u;
+    return static_cast<std::uint32_t>(hash >> 32);
+  }
 };
 
 /// What a worker of `ProximityPass` has.
@@ -63,7 +70,8 @@ struct ProximityWorker : PassWorker<FoundPair> {
   std::size_t merge_at = 0;     // size of `found`
   bool is_full = false;         // nothing after the last of what was merged is needed
   FoundPair last;
-  std::array<FoundPair, 256> recent;  // some of the candidates that were added before
+  // The hashes of some that were added before, and their places in `found`.
+  std::array<std::array<std::uint32_t, 2>, 8192> recent{};
   /// What only exact arithmetic decides, of one job.
   struct Decision {
     std::optional<ClosestFeatures> features;
@@ -99,6 +107,8 @@ class ProximityPass : public Pass<ProximityPass, MovingObject, ProximityWorker, 
     ElementIds first, second;
     std::array<std::uint32_t, 4> vertices;  // of first, then of second, in the order of their corners
     bool is_swapped = false;  // two edges of one object, in the other order than the candidate's
+
+    ClosestFeatures features_of(FeatureCode code) const;
   };
   /// A candidate that may cross.
   struct Crossing {
@@ -112,7 +122,9 @@ class ProximityPass : public Pass<ProximityPass, MovingObject, ProximityWorker, 
   void run_task(std::size_t task, Worker& worker);
   void test_candidates(std::uint32_t job, ElementPairKind kind, std::span<const ElementPair> candidates,
                        Worker& worker);
-  void add(std::uint32_t job, ElementPairKind kind, ElementPair candidate, FeatureCode code, Worker& worker);
+  void add(std::uint32_t job, ElementPairKind kind, ElementPair candidate,
+           const std::array<std::uint32_t, 4>& vertices, FeatureCode code, Worker& worker);
+  FeatureCode decide(std::uint32_t job, ElementPairKind kind, ElementPair candidate, Worker& worker) const;
   Crossing crossing_of(std::uint32_t job, CandidateKind kind, ElementPair candidate) const;
   void test_crossings(std::uint32_t job, CandidateKind kind, std::span<const ElementPair> candidates,
                       Worker& worker);

@@ -25,9 +25,10 @@ HWY_INLINE Doubles constant(double value) {
   return hn::Set(Lanes(), value);
 }
 HWY_INLINE Vector point(const PointsBlock& block, std::size_t vertex, std::size_t first) {
-  const Lanes d;
-  const auto& axes = block.points[vertex];
-  return {hn::Load(d, axes[0] + first), hn::Load(d, axes[1] + first), hn::Load(d, axes[2] + first)};
+  Vector point;
+  Doubles unused;
+  hn::LoadInterleaved4(Lanes(), block.points[vertex][first], point.x, point.y, point.z, unused);
+  return point;
 }
 HWY_INLINE Vector backwards(const Vector& v) {
   return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
@@ -43,6 +44,17 @@ HWY_INLINE Vector backwards(const Vector& v) {
 HWY_INLINE Doubles size_of(const Vector& v) {
   const Vector size = absolute(v);
   return hn::Max(size.x, hn::Max(size.y, size.z));
+}
+
+constexpr double crosses = static_cast<double>(FeatureCode::crosses);
+constexpr double apart = static_cast<double>(FeatureCode::apart);
+constexpr double unknown = static_cast<double>(FeatureCode::unknown);
+
+HWY_INLINE void store(Doubles lanes, FeatureCode* codes, std::size_t count) {
+  double numbers[8];
+  hn::StoreU(lanes, Lanes(), numbers);
+  for (std::size_t i = 0; i < std::min(count, hn::Lanes(Lanes())); ++i)
+    codes[i] = static_cast<FeatureCode>(numbers[i]);
 }
 
 /// One vector of pairs.
@@ -155,17 +167,9 @@ class Classification {
     const LaneMask beyond = hn::And(in_range, hn::Gt(least, hn::Add(width, error)));
     code_ = hn::IfThenElse(hn::And(hn::Eq(code_, constant(unknown)), beyond), constant(apart), code_);
   }
-  HWY_INLINE void store(FeatureCode* codes, std::size_t count) const {
-    const Lanes d;
-    double numbers[8];
-    hn::StoreU(code_, d, numbers);
-    for (std::size_t i = 0; i < count; ++i) codes[i] = static_cast<FeatureCode>(numbers[i]);
-  }
+  HWY_INLINE Doubles codes() const { return code_; }
 
  private:
-  static constexpr double apart = static_cast<double>(FeatureCode::apart);
-  static constexpr double unknown = static_cast<double>(FeatureCode::unknown);
-
   /// Sets the codes of the lanes where `value` is certainly at most `limit`, or above it.
   HWY_INLINE void decide(LaneMask lanes, Doubles value, Doubles limit, Doubles error, Doubles code) {
     const LaneMask within = hn::And(lanes, hn::Lt(value, hn::Sub(limit, error)));
@@ -214,7 +218,40 @@ void Classify(const PointsBlock& block, std::size_t count, bool are_edges, doubl
         if (pairs.has_unknown()) pairs.try_slab(reach, w, p0_p2, subtract(p0, p3));
       }
     }
-    pairs.store(codes + first, std::min(count - first, hn::Lanes(d)));
+    store(pairs.codes(), codes + first, count - first);
+  }
+}
+
+/// With the points seen from the first end of the edge, an edge w crosses a face a, b, c when the volumes
+/// w·(a × b), w·(b × c) and w·(c × a) have one sign, and the ends are on different sides of the face: the
+/// first by the volume a·(b × c), the last by that volume less the sum of the others.
+///
+/// With s the largest coordinate of a, b and c and r that of w, the last side has 6 terms of at most s³, 18
+/// of at most r s² and 11 roundings, an error below 2^-44 s² (r + s). The other errors are smaller.
+void ClassifyCrossings(const PointsBlock& block, std::size_t count, FeatureCode* codes) {
+  for (std::size_t first = 0; first < count; first += hn::Lanes(Lanes())) {
+    const Vector p = point(block, 0, first), w = subtract(point(block, 1, first), p),
+                 a = subtract(point(block, 2, first), p), b = subtract(point(block, 3, first), p),
+                 c = subtract(point(block, 4, first), p), bxc = cross(b, c);
+    const Doubles t0 = dot(w, cross(a, b)), t1 = dot(w, bxc), t2 = dot(w, cross(c, a));
+    const Doubles from = dot(a, bxc), to = hn::Sub(from, hn::Add(hn::Add(t0, t1), t2));
+    const Doubles r = size_of(w), s = hn::Max(size_of(a), hn::Max(size_of(b), size_of(c)));
+    const Doubles error = hn::Mul(constant(0x1p-44), hn::Mul(hn::Mul(s, s), hn::Add(r, s)));
+    const LaneMask in_range =
+        hn::And(hn::Gt(hn::Min(r, s), constant(0x1p-100)), hn::Lt(hn::Max(r, s), constant(0x1p100)));
+    const auto same_sign = [&](Doubles least, Doubles most) HWY_ATTR {
+      return hn::Or(hn::Gt(least, error), hn::Lt(most, hn::Neg(error)));
+    };
+    const auto other_sign = [&](Doubles least, Doubles most) HWY_ATTR {
+      return hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(most, error));
+    };
+    const Doubles least = hn::Min(t0, hn::Min(t1, t2)), most = hn::Max(t0, hn::Max(t1, t2));
+    const Doubles least_side = hn::Min(from, to), most_side = hn::Max(from, to);
+    const LaneMask misses = hn::Or(other_sign(least, most), same_sign(least_side, most_side));
+    const LaneMask meets = hn::And(same_sign(least, most), other_sign(least_side, most_side));
+    const Doubles code =
+        hn::IfThenElse(misses, constant(apart), hn::IfThenElse(meets, constant(crosses), constant(unknown)));
+    store(hn::IfThenElse(in_range, code, constant(unknown)), codes + first, count - first);
   }
 }
 
@@ -306,8 +343,8 @@ struct Part {
   bool is_full;    // accuracy
 
   HWY_INLINE Vector point(std::size_t vertex) const {
-    const auto& axes = block.points[vertex];
-    if (is_single) return {constant(axes[0][first]), constant(axes[1][first]), constant(axes[2][first])};
+    const double* const p = block.points[vertex][first];
+    if (is_single) return {constant(p[0]), constant(p[1]), constant(p[2])};
     return HWY_NAMESPACE::point(block, vertex, first);
   }
 };
@@ -417,6 +454,7 @@ HWY_AFTER_NAMESPACE();
 namespace supple {
 
 HWY_EXPORT(Classify);
+HWY_EXPORT(ClassifyCrossings);
 HWY_EXPORT(ComputeDistanceNumbers);
 
 void classify(const PointsBlock& block, std::size_t count, bool are_edges, double max_distance,
@@ -424,17 +462,8 @@ void classify(const PointsBlock& block, std::size_t count, bool are_edges, doubl
   HWY_DYNAMIC_DISPATCH(Classify)(block, count, are_edges, max_distance, codes);
 }
 
-ClosestFeatures features_of_code(FeatureCode code, bool are_edges) {
-  using Kind = ClosestFeatures::Kind;
-  static constexpr ClosestFeatures of_edges[] = {
-      {Kind::interiors, 0, {}},       {Kind::vertices, 0, {2, 0}},    {Kind::vertices, 0, {3, 0}},
-      {Kind::vertices, 1, {2, 0}},    {Kind::vertices, 1, {3, 0}},    {Kind::vertex_edge, 0, {2, 3}},
-      {Kind::vertex_edge, 1, {2, 3}}, {Kind::vertex_edge, 2, {0, 1}}, {Kind::vertex_edge, 3, {0, 1}}};
-  static constexpr ClosestFeatures of_face[] = {
-      {Kind::interiors, 0, {}},      {Kind::vertices, 0, {1, 0}},    {Kind::vertices, 0, {2, 0}},
-      {Kind::vertices, 0, {3, 0}},   {Kind::vertex_edge, 0, {1, 2}}, {Kind::vertex_edge, 0, {1, 3}},
-      {Kind::vertex_edge, 0, {2, 3}}};
-  return (are_edges ? of_edges : of_face)[static_cast<std::size_t>(code)];
+void classify_crossings(const PointsBlock& block, std::size_t count, FeatureCode* codes) {
+  HWY_DYNAMIC_DISPATCH(ClassifyCrossings)(block, count, codes);
 }
 
 void compute_distance_numbers(const PointsBlock& block, std::size_t count, FeaturePair kind,

@@ -7,18 +7,19 @@
 
 namespace supple {
 
-/// The points of up to 64 pairs: of a vertex and a face, of two edges, or of two features. All coordinates
-/// are finite.
+/// The points of up to 64 pairs: of a vertex and a face, of two edges, of two features, or of an edge and a
+/// face. All coordinates are finite.
 struct PointsBlock {
   static constexpr std::size_t capacity = 64;
 
-  /// By vertex, as `ElementPoints` orders them, by axis and by pair.
-  alignas(64) double points[4][3][capacity];
+  /// By vertex, as `ElementPoints` orders them, by pair and by axis. The fourth number is unspecified.
+  alignas(64) double points[5][capacity][4];
 
   void set(std::size_t vertex, std::size_t pair, const Vec3d& point) {
-    points[vertex][0][pair] = point.x;
-    points[vertex][1][pair] = point.y;
-    points[vertex][2][pair] = point.z;
+    double* const p = points[vertex][pair];
+    p[0] = point.x;
+    p[1] = point.y;
+    p[2] = point.z;
   }
   /// Sets what `compute_distance_numbers` needs of two features.
   void set_features(std::size_t pair, const ElementPoints& elements, const ClosestFeatures& features);
@@ -26,7 +27,7 @@ struct PointsBlock {
 
 /// What `classify` says about a pair: the closest features of elements within the distance by their number in
 /// `features_of_code`, or one of two answers.
-enum class FeatureCode : std::uint8_t { apart = 254, unknown = 255 };
+enum class FeatureCode : std::uint8_t { interiors = 0, crosses = 0, apart = 254, unknown = 255 };
 
 /// Finds the closest features of `count` pairs of a vertex and a face, or of two edges, whose distance is at
 /// most `max_distance` ≥ 0. Every answer but `unknown` is exact. It is `unknown` where double precision
@@ -35,6 +36,12 @@ enum class FeatureCode : std::uint8_t { apart = 254, unknown = 255 };
 void classify(const PointsBlock& block, std::size_t count, bool are_edges, double max_distance,
               FeatureCode* codes);
 ClosestFeatures features_of_code(FeatureCode code, bool are_edges);
+/// The ends of both features; those of a vertex are equal, those of a face say nothing.
+std::array<std::uint8_t, 4> ends_of_code(FeatureCode code, bool are_edges);
+
+/// What `edge_crosses_face` says about `count` pairs of an edge and a face: `apart`, `crosses`, or `unknown`
+/// where double precision cannot decide.
+void classify_crossings(const PointsBlock& block, std::size_t count, FeatureCode* codes);
 
 /// `DistanceNumbers` of up to 64 pairs.
 struct DistanceNumbersBlock {

@@ -226,6 +226,23 @@ void PointsBlock::set_features(std::size_t pair, const ElementPoints& elements,
   for (std::size_t i = 0; i < 4; ++i) set(i, pair, elements.points[used[i]]);
 }
 
+std::array<std::uint8_t, 4> ends_of_code(FeatureCode code, bool are_edges) {
+  static constexpr std::array<std::uint8_t, 4> of_edges[] = {{0, 1, 2, 3}, {0, 0, 2, 2}, {0, 0, 3, 3},
+                                                             {1, 1, 2, 2}, {1, 1, 3, 3}, {0, 0, 2, 3},
+                                                             {1, 1, 2, 3}, {0, 1, 2, 2}, {0, 1, 3, 3}};
+  static constexpr std::array<std::uint8_t, 4> of_face[] = {
+      {}, {0, 0, 1, 1}, {0, 0, 2, 2}, {0, 0, 3, 3}, {0, 0, 1, 2}, {0, 0, 1, 3}, {0, 0, 2, 3}};
+  return (are_edges ? of_edges : of_face)[static_cast<std::size_t>(code)];
+}
+
+ClosestFeatures features_of_code(FeatureCode code, bool are_edges) {
+  const auto [p, p_end, q, q_end] = ends_of_code(code, are_edges);
+  if (code == FeatureCode::interiors) return {Features::Kind::interiors, 0, {}};
+  if (p != p_end) return {Features::Kind::vertex_edge, q, {p, p_end}};
+  if (q != q_end) return {Features::Kind::vertex_edge, p, {q, q_end}};
+  return {Features::Kind::vertices, p, {q, 0}};
+}
+
 FeaturePair feature_pair_of(const ElementPoints& elements, const ClosestFeatures& features) {
   if (features.kind == ClosestFeatures::Kind::vertices) return FeaturePair::vertices;
   if (features.kind == ClosestFeatures::Kind::vertex_edge) return FeaturePair::vertex_edge;

@@ -19,15 +19,19 @@ class RecentElements {
   /// Null when the answer is not known.
   const Answer* find(const ElementPoints& elements) const {
     if (entries_.empty()) return nullptr;
-    const Entry& entry = entries_[place_of(elements)];
-    const bool is_same = entry.version == version_ && entry.elements.points == elements.points &&
-                         entry.elements.count_a == elements.count_a &&
-                         entry.elements.count_b == elements.count_b;
-    return is_same ? &entry.answer : nullptr;
+    const std::size_t place = place_of(elements);
+    for (const Entry* const entry : {&entries_[place], &entries_[place ^ 1]}) {
+      if (entry->version == version_ && entry->elements.points == elements.points &&
+          entry->elements.count_a == elements.count_a && entry->elements.count_b == elements.count_b)
+        return &entry->answer;
+    }
+    return nullptr;
   }
   void store(const ElementPoints& elements, const Answer& answer) {
     if (entries_.empty()) entries_.resize(size);
-    entries_[place_of(elements)] = {elements, answer, version_};
+    const std::size_t place = place_of(elements);
+    entries_[place ^ 1] = entries_[place];  // so that two that alternate are both kept
+    entries_[place] = {elements, answer, version_};
   }
 
  private:

@@ -122,11 +122,14 @@ PairName name_of_pair(const ElementIds& first, const ElementIds& second, const C
     set_feature(first, on[0], name.kind_a, name.element_a);
     set_feature(second, on[1], name.kind_b, name.element_b);
   }
-  if (swaps_sides(order, name.kind_a, name.element_a, name.kind_b, name.element_b)) {
-    std::swap(name.kind_a, name.kind_b);
-    std::swap(name.element_a, name.element_b);
-  }
+  name.put_in_order(order);
   return name;
+}
+
+void PairName::put_in_order(PairOrder order) {
+  if (!swaps_sides(order, kind_a, element_a, kind_b, element_b)) return;
+  std::swap(kind_a, kind_b);
+  std::swap(element_a, element_b);
 }
 
 std::optional<ProximityPair> proximity_pair_within(const PairElement& first, const PairElement& second,
@@ -157,15 +160,6 @@ ProximityPair proximity_pair_of(const PairElement& first, const PairElement& sec
   }
   pair.normal = pair.normal + Vec3d{};  // no negative zeros, which depend on the order of the elements
   return pair;
-}
-
-PairName name_of_crossing(const ElementIds& edge, const ElementIds& face, PairOrder order) {
-  PairName name{edge.kind, face.kind, edge.name(), face.name()};
-  if (order == PairOrder::swapped) {
-    std::swap(name.kind_a, name.kind_b);
-    std::swap(name.element_a, name.element_b);
-  }
-  return name;
 }
 
 ProximityPair crossing_pair_of(const PairElement& edge, const PairElement& face, const ObjectPair& objects,

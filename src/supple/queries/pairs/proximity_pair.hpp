@@ -52,6 +52,7 @@ struct PairElement : ElementIds {
   std::array<Vec3d, 3> points{};
 
   PairElement() = default;
+  explicit PairElement(const ElementIds& element) : ElementIds(element) {}
   /// `positions` are in the order of `vertex_ids`.
   PairElement(std::span<const std::uint32_t> vertex_ids, const std::array<Vec3d, 3>& positions,
               std::uint32_t triangle_id)
@@ -75,6 +76,7 @@ struct PairName {
 
   auto operator<=>(const PairName& other) const { return packed() <=> other.packed(); }
   bool operator==(const PairName& other) const { return packed() == other.packed(); }
+  void put_in_order(PairOrder order);
 
  private:
   /// The members in the order of the comparison, as few numbers.
@@ -99,9 +101,8 @@ std::optional<ProximityPair> proximity_pair_within(const PairElement& first, con
                                                    const ObjectPair& objects, PairOrder order,
                                                    ProximityListing listing, double reach, bool& used_exact);
 
-/// The name and the pair of an edge that crosses a face, as `edge_crosses_face` says. They are the same in
-/// both listings. Sets `used_exact` when integers decide.
-PairName name_of_crossing(const ElementIds& edge, const ElementIds& face, PairOrder order);
+/// The pair of an edge that crosses a face, as `edge_crosses_face` says. It is the same in both listings.
+/// Sets `used_exact` when integers decide.
 ProximityPair crossing_pair_of(const PairElement& edge, const PairElement& face, const ObjectPair& objects,
                                PairOrder order, bool& used_exact);
 /// The corners of a face in the user's order.
