@@ -197,12 +197,13 @@ class BottomUpSplitter {
 
 /// Sorts again where triangles have the same code although their centres differ, so that a vertex far away
 /// does not cost the others their order.
-void sort_finely(std::span<CurvePlace> places, std::span<const Vec3d> centers) {
-  sort_along_curve(places, centers);
+void sort_finely(std::span<CurvePlace> places, std::span<const Vec3d> centers,
+                 std::vector<CurvePlace>& memory) {
+  sort_along_curve(places, centers, memory);
   if (places.empty() || places.front().code == places.back().code) return;
   for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
     while (end < places.size() && places[end].code == places[begin].code) ++end;
-    if (end - begin > reach) sort_finely(places.subspan(begin, end - begin), centers);
+    if (end - begin > reach) sort_finely(places.subspan(begin, end - begin), centers, memory);
   }
 }
 
@@ -219,9 +220,9 @@ Aabb box_of(const PositionsView& positions, const Triangle& triangle) {
 
 OctreeTopology build_bottom_up_octree(const PositionsView& positions, std::span<const Triangle> triangles,
                                       std::span<const Vec3d> centers, const ObjectOctreeOptions& options) {
-  std::vector<CurvePlace> places;
+  std::vector<CurvePlace> places, memory;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) places.push_back({0, t});
-  sort_finely(places, centers);
+  sort_finely(places, centers, memory);
   std::vector<Cluster> clusters;
   clusters.reserve(places.size());
   for (const CurvePlace& place : places) {

@@ -26,14 +26,14 @@ class RegularSplitter {
         is_coded_again_(centers.size(), false) {
     assert(options.arity == 2 || options.arity == 4 || options.arity == 8);
     for (std::uint32_t i = 0; i < coded_.size(); ++i) coded_[i] = {0, i};
-    sort_along_curve(coded_, centers_);
+    sort_along_curve(coded_, centers_, memory_);
   }
 
   bool should_split(TriangleRange range, std::uint32_t level) {
     if (range.size() <= leaf_size_ || level >= deepest_) return false;
     if (coded_[range.begin].code != coded_[range.end - 1].code) return true;
     // The codes are used up, but the centres may differ: the cube around them gives them new codes.
-    sort_along_curve(std::span(coded_).subspan(range.begin, range.size()), centers_);
+    sort_along_curve(std::span(coded_).subspan(range.begin, range.size()), centers_, memory_);
     std::fill_n(is_coded_again_.begin() + range.begin, range.size(), true);
     return coded_[range.begin].code != coded_[range.end - 1].code;
   }
@@ -82,7 +82,7 @@ class RegularSplitter {
   std::uint32_t leaf_size_;
   int bits_per_level_;
   std::uint32_t deepest_;  ///< level
-  std::vector<CurvePlace> coded_;
+  std::vector<CurvePlace> coded_, memory_;
   std::vector<bool> is_coded_again_;  ///< the code does not begin at the root
 };
 

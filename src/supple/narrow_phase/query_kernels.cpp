@@ -161,6 +161,31 @@ std::uint64_t TrianglesOnRay(const RaySlabs& ray, const LeafBoxes& boxes, double
   return found & boxes.triangles;
 }
 
+void FindCells(const CellGrid& grid, std::span<const Vec3d> points, std::uint32_t* cells) {
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<std::int32_t, decltype(d)> integers;
+  const hn::Rebind<std::uint32_t, decltype(d)> words;
+  for (std::size_t i = 0; i < points.size(); i += hn::Lanes(d)) {
+    std::array<Vec3d, 8> last{};
+    const bool is_last = points.size() - i < hn::Lanes(d);
+    if (is_last) std::copy(points.begin() + static_cast<std::ptrdiff_t>(i), points.end(), last.begin());
+    hn::Vec<decltype(d)> along[3];
+    hn::LoadInterleaved3(d, is_last ? &last[0].x : &points[i].x, along[0], along[1], along[2]);
+    auto is_in = hn::Eq(hn::Zero(d), hn::Zero(d));
+    auto cell = hn::Zero(d);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto low = hn::Set(d, grid.low[axis]), high = hn::Set(d, grid.high[axis]);
+      is_in = hn::And(is_in, hn::And(hn::Ge(along[axis], low), hn::Le(along[axis], high)));
+      const auto place = hn::Min(hn::Mul(hn::Sub(along[axis], low), hn::Set(d, grid.scale[axis])),
+                                 hn::Set(d, grid.counts[static_cast<std::size_t>(axis)] - 1.0));
+      const auto step = hn::Set(d, 1.0 * grid.step(axis));
+      cell = hn::Add(cell, hn::Mul(hn::Add(hn::Trunc(place), hn::Set(d, 1.0)), step));
+    }
+    const auto found = hn::DemoteTo(integers, hn::IfThenElseZero(is_in, cell));
+    hn::StoreU(hn::BitCast(words, found), words, cells + i);
+  }
+}
+
 }  // namespace
 }  // namespace supple::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -174,6 +199,7 @@ HWY_EXPORT(PacketDistances);
 HWY_EXPORT(NearInPacket);
 HWY_EXPORT(RayBounds);
 HWY_EXPORT(TrianglesOnRay);
+HWY_EXPORT(FindCells);
 
 void squared_distances(const Aabb& point, const ChildBoxes& boxes, std::array<float, 8>& squares) {
   HWY_DYNAMIC_DISPATCH(SquaredDistances)(point, boxes, squares.data());
@@ -192,6 +218,10 @@ void ray_bounds(const RaySlabs& ray, const ChildBoxes& boxes, std::array<double,
 }
 std::uint64_t triangles_on_ray(const RaySlabs& ray, const LeafBoxes& boxes, double limit) {
   return HWY_DYNAMIC_DISPATCH(TrianglesOnRay)(ray, boxes, limit);
+}
+void find_cells(const CellGrid& grid, std::span<const Vec3d> points,
+                std::array<std::uint32_t, CellGrid::block>& cells) {
+  HWY_DYNAMIC_DISPATCH(FindCells)(grid, points, cells.data());
 }
 
 }  // namespace supple

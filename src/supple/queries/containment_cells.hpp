@@ -3,56 +3,74 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
+#include "narrow_phase/query_kernels.hpp"
+#include "octree/morton_curve.hpp"
 #include "queries/object_queries.hpp"
 
 namespace supple {
 
+/// Points that need an exact answer: copies, because the points are far apart in memory, and their numbers.
+struct OpenPoints {
+  std::vector<CurvePlace> order;  ///< of the copies
+  std::vector<Vec3d> points;
+  std::vector<std::uint32_t> numbers;
+  std::vector<Containment> sides;
+
+  void clear() {
+    order.clear();
+    points.clear();
+    numbers.clear();
+    sides.clear();
+  }
+  void add(std::uint64_t code, const Vec3d& point, std::size_t number) {
+    order.push_back({code, static_cast<std::uint32_t>(points.size())});
+    points.push_back(point);
+    numbers.push_back(static_cast<std::uint32_t>(number));
+    sides.push_back(Containment::outside);
+  }
+};
+
 /// Cells around one closed surface, for many questions whether points are inside. All points of a cell that
 /// no triangle's box meets are on the same side of the surface, and so are those of two such neighbours. So
-/// one exact query answers for all cells that are connected.
+/// one exact query answers for all cells that are connected. From a point in another cell, a ray along an
+/// axis leads to such a cell, and the triangles on it are those of the cells on the way.
 ///
-/// The cell of a point is a function of each coordinate that never decreases, also as it is rounded. So the
+/// The place of a point is a function of each coordinate that never decreases, also as it is rounded. So the
 /// cells of a box are those between the cells of its corners, and a cell has an interval of each coordinate:
 /// the answers are exact.
 class ContainmentCells {
  public:
-  /// Chooses about two cells for each question. Returns false, and `side_of` must not be called, when cells
+  /// Chooses at most two cells for each question. Returns false, and nothing else must be called, when cells
   /// do not pay: for few questions, and for triangles that fill many cells. O(cells + triangles).
-  bool build(const QueriedObject& object, std::size_t questions, ObjectQueries& queries);
-  /// The side of a point in the box of the object. Nothing when a triangle may be near.
-  std::optional<Containment> side_of(const Vec3d& point) const {
-    const Content content = cells_[index_of(cell_of(point))];
-    if (!is_decided(content)) return {};
-    return content == Content::inside ? Containment::inside : Containment::outside;
-  }
+  bool build(const QueriedObject& object, std::span<const Vec3d> points, ObjectQueries& queries);
+  /// Raises the results of at most a block of points in the box of the object. Appends those that are in
+  /// cells with triangles to `open`, with `first` added to their numbers.
+  void raise(std::span<const Vec3d> points, std::size_t first, std::span<Containment> results,
+             OpenPoints& open) const;
+  /// For a point in the box of the object.
+  Containment side_of(const Vec3d& point, const QueriedObject& object, ObjectQueries& queries) const;
 
  private:
-  enum class Content : std::uint8_t { unknown, triangles, outside, inside };
-  using Cell = std::array<std::uint32_t, 3>;
+  struct Entry {
+    CellGrid::Place first, last;  ///< of the triangle's box; the rest of the bits are the triangle's number
 
-  static bool is_decided(Content content) { return content >= Content::outside; }
-  Cell cell_of(const Vec3d& point) const {
-    Cell cell;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double place = (point[static_cast<int>(axis)] - low_[axis]) * scale_[axis];
-      cell[axis] = static_cast<std::uint32_t>(place < last_[axis] ? place : last_[axis]);
-    }
-    return cell;
-  }
-  std::size_t index_of(const Cell& cell) const {
-    return (std::size_t{cell[2]} * counts_[1] + cell[1]) * counts_[0] + cell[0];
-  }
-  bool choose_cells(const Aabb& box, std::size_t questions);
-  bool mark_triangles(const QueriedObject& object);
+    std::uint32_t triangle() const { return static_cast<std::uint32_t>(first >> 48 | last >> 48 << 16); }
+  };
+
+  template <class Visit>
+  void visit_cells(const Entry& entry, const Visit& visit) const;
+  bool choose_cells(const Aabb& box, std::size_t count);
+  bool list_triangles(const QueriedObject& object);
   void decide(const QueriedObject& object, ObjectQueries& queries);
-  Content ask(const Cell& cell, const QueriedObject& object, ObjectQueries& queries) const;
+  Containment ask(const CellGrid::Cell& cell, const QueriedObject& object, ObjectQueries& queries) const;
 
-  std::array<double, 3> low_{}, scale_{}, last_{};  // the last cell of each axis
-  Cell counts_{};
-  std::vector<Content> cells_;  // x first
+  CellGrid grid_;
+  std::vector<Containment> sides_;       // `on` for cells with triangles, or too small to ask for
+  std::vector<std::uint32_t> begins_;    // of the entries of each cell, and the end
+  std::vector<Entry> listed_, entries_;  // by triangle, and by cell
 };
 
 }  // namespace supple

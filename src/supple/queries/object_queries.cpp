@@ -6,9 +6,9 @@
 #include <limits>
 #include <tuple>
 
+#include "contact/distance/axis_ray.hpp"
 #include "contact/distance/element_distance.hpp"
 #include "contact/distance/ray_triangle.hpp"
-#include "contact/distance/upward_ray.hpp"
 #include "core/float_rounding.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/query_kernels.hpp"
@@ -383,7 +383,7 @@ void ObjectQueries::visit_overlapping(std::uint32_t index, const QueriedObject& 
 
 Containment ObjectQueries::inside(std::uint32_t index, const QueriedObject& object, const Vec3d& point) {
   if (!is_finite(point)) return Containment::outside;
-  UpwardRay ray(point);
+  AxisRay ray(point);
   const QueryBox column{point, {point.x, point.y, infinity}};
   visit_overlapping(index, object, column, [&](std::uint32_t t) { ray.meet(object.corners(t)); });
   if (ray.starts_on_surface()) return Containment::on;

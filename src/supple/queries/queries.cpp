@@ -1,5 +1,7 @@
 #include "queries/queries.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -90,7 +92,7 @@ void Queries::answer(std::span<const Vec3d> places, const StopSignal& stop, Call
   constexpr std::size_t grain = DistanceBatch::capacity;
   use.order.resize(places.size());
   for (std::uint32_t i = 0; i < places.size(); ++i) use.order[i].triangle = i;
-  sort_along_curve(use.order, places);
+  sort_along_curve(use.order, places, use.workers.front().memory);
   world_.parallel.for_ranges(
       places.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
         use.workers[worker].queries.start(stop);
@@ -226,38 +228,38 @@ void Queries::inside(std::span<const Vec3d> points, std::span<Containment> resul
 /// Raises the results of the points in the box of the object.
 void Queries::find_inside(const QueriedObject& object, std::span<const Vec3d> points, const StopSignal& stop,
                           std::span<Containment> results, Call& use) const {
-  constexpr std::size_t grain = 4096;
-  const auto in_box = [&](const Vec3d& point) {
-    bool is_in = true;
-    for (int axis = 0; axis < 3; ++axis)
-      is_in &= object.box.min[axis] <= point[axis] && point[axis] <= object.box.max[axis];
-    return is_in;
-  };
-  const auto count = static_cast<std::size_t>(std::count_if(points.begin(), points.end(), in_box));
-  if (count == 0) return;
   use.workers.front().queries.start(stop);
-  const bool has_cells = use.cells.build(object, count, use.workers.front().queries);
-  world_.parallel.for_ranges(points.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-    Worker& worker = use.workers[w];
-    std::vector<CurvePlace>& open = worker.order;
-    open.clear();
-    for (std::size_t i = begin; i < end; ++i) {
-      if (results[i] == Containment::inside || !in_box(points[i])) continue;
-      const auto side = has_cells ? use.cells.side_of(points[i]) : std::nullopt;
-      if (side) {
-        results[i] = std::max(results[i], *side);
-      } else {
-        open.push_back({0, static_cast<std::uint32_t>(i)});
-      }
-    }
-    sort_along_curve(open, points);
-    worker.queries.start(stop);
-    for (const CurvePlace& place : open) {
-      if (stop.stop_requested()) return;
-      Containment& answer = results[place.triangle];
-      answer = std::max(answer, worker.queries.inside(0, object, points[place.triangle]));
-    }
-  });
+  const bool has_cells = use.cells.build(object, points, use.workers.front().queries);
+  world_.parallel.for_ranges(
+      points.size(), 1 << 16, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+        ObjectQueries& queries = use.workers[w].queries;
+        OpenPoints& open = use.workers[w].open;
+        open.clear();
+        for (std::size_t count = 0; begin < end && !stop.stop_requested(); begin += count) {
+          count = std::min(CellGrid::block, end - begin);
+          if (has_cells) {
+            use.cells.raise(points.subspan(begin, count), begin, results.subspan(begin, count), open);
+            continue;
+          }
+          for (std::size_t i = begin; i < begin + count; ++i) {
+            if (contains(object.box, points[i])) open.add(0, points[i], i);
+          }
+        }
+        if (has_cells)
+          sort_by_code(open.order, use.workers[w].memory);
+        else
+          sort_along_curve(open.order, open.points, use.workers[w].memory);
+        queries.start(stop);
+        constexpr std::size_t ahead = 8;
+        for (std::size_t k = 0; k < open.order.size() && !stop.stop_requested(); ++k) {
+          hwy::Prefetch(&open.points[open.order[std::min(k + ahead, open.order.size() - 1)].triangle]);
+          const std::uint32_t i = open.order[k].triangle;
+          open.sides[i] = has_cells ? use.cells.side_of(open.points[i], object, queries)
+                                    : queries.inside(0, object, open.points[i]);
+        }
+        for (std::size_t i = 0; i < open.numbers.size(); ++i)
+          results[open.numbers[i]] = std::max(results[open.numbers[i]], open.sides[i]);
+      });
 }
 
 template <class Region>

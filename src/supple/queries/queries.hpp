@@ -54,7 +54,8 @@ class Queries {
     ObjectQueries queries;
     NearestPairSearch pair_search;
     DistanceBatch distances;
-    std::vector<CurvePlace> order;
+    OpenPoints open;
+    std::vector<CurvePlace> memory;  // of sorts
     std::vector<ListedRayHit> hits;
     std::vector<Overlap> overlaps;
   };

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "contact/distance/upward_ray.hpp"
+#include "contact/distance/axis_ray.hpp"
 #include "geometry/numbers/integer_points.hpp"
 #include "geometry/vector.hpp"
 #include "mesh/vertex_sets.hpp"
@@ -105,7 +105,7 @@ void Orientation::find_holes(const PositionsView& positions) {
     const std::span<const std::uint32_t> triangles = triangles_of(inner);
     for (std::size_t i = 0; i < most; ++i) {
       const std::size_t corner = i * 3 * triangles.size() / most;
-      UpwardRay ray(positions[triangles_[triangles[corner / 3]][corner % 3]]);
+      AxisRay ray(positions[triangles_[triangles[corner / 3]][corner % 3]]);
       for (const std::uint32_t t : triangles_of(outer)) ray.meet(corners_of(triangles_[t], positions));
       if (ray.starts_on_surface() || !ray.is_odd()) return false;
     }
