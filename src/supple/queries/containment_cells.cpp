@@ -58,7 +58,8 @@ void ContainmentCells::visit_cells(const Entry& entry, const Visit& visit) const
 
 /// False when it takes too long, because triangles are large or many lie in one place.
 bool ContainmentCells::list_triangles(const QueriedObject& object) {
-  std::size_t left = 2 * (sides_.size() + object.triangles.size());
+  const std::size_t most = 2 * (sides_.size() + object.triangles.size());
+  std::size_t count = 0;
   const std::uint8_t* const inert = object.view.arrays.inert;
   listed_.clear();
   for (std::uint32_t t = 0; t < object.triangles.size(); ++t) {
@@ -67,12 +68,8 @@ bool ContainmentCells::list_triangles(const QueriedObject& object) {
     const Entry& entry =
         listed_.emplace_back(Entry{grid_.place_of(box.min) | CellGrid::Place{t} << 48,
                                    grid_.place_of(box.max) | CellGrid::Place{t >> 16} << 48});
-    const CellGrid::Cell first = CellGrid::cell_of(entry.first), last = CellGrid::cell_of(entry.last);
-    std::size_t count = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) count *= last[axis] - first[axis] + 1u;
-    if (count > left) return false;
-    left -= count;
-    visit_cells(entry, [&](std::size_t cell) { ++begins_[cell]; });
+    visit_cells(entry, [&](std::size_t cell) { ++begins_[cell], ++count; });
+    if (count > most) return false;
   }
   std::inclusive_scan(begins_.begin(), begins_.end(), begins_.begin());
   entries_.resize(begins_.back());

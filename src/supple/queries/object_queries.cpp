@@ -338,7 +338,7 @@ std::optional<RayHit> ObjectQueries::cast(std::span<const QueriedObject> objects
     ++hits;
     if (best && !is_before(found, *best)) return;
     best = found;
-    if (!count_hits) limit = std::min(any, found.parameter.rounded() * (1 + 0x1p-45) + 0x1p-1060);
+    if (!count_hits) limit = std::min(any, found.parameter.upper_bound());
   });
   if (!best) return {};
   return hit_of(objects[best->object].id, ray, *best, count_hits ? hits : 1);

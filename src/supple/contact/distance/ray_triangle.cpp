@@ -183,6 +183,14 @@ double RayParameter::rounded() const {
   return Quotient(t.numerator, t.denominator).value();
 }
 
+double RayParameter::upper_bound() const {
+  const bool is_known = is_bounded_ && is_well_known(numerator_) && is_well_known(denominator_);
+  const double value = is_known
+                           ? (numerator_.value + numerator_.bound) / (denominator_.value - denominator_.bound)
+                           : rounded();
+  return value * (1 + 0x1p-45) + 0x1p-1060;
+}
+
 int RayParameter::compare(const RayParameter& other, bool& used_exact) const {
   if (is_bounded_ && other.is_bounded_) {
     const int side = sign_of(numerator_ * other.denominator_ - other.numerator_ * denominator_);

@@ -18,6 +18,8 @@ class RayParameter {
   const TrianglePoints& triangle() const { return triangle_; }
   /// Within 4 units in the last place.
   double rounded() const;
+  /// At least the value, and hardly more; takes less than `rounded`.
+  double upper_bound() const;
   /// The sign of the difference of two parameters, exact.
   int compare(const RayParameter& other, bool& used_exact) const;
 

@@ -91,6 +91,29 @@ void BoundDistances(const Vec3d* points, const PlacedTriangles& triangles, const
   });
 }
 
+void BoundDepths(const Vec3d& origin, const Vec3d& normal, const PlacedTriangles& triangles,
+                 const TrianglePair* list, std::size_t count, double* least) {
+  using Tag = hn::CappedTag<double, 8>;
+  const Tag d;
+  const Vector3<Tag> o{hn::Set(d, origin.x), hn::Set(d, origin.y), hn::Set(d, origin.z)},
+      n{hn::Set(d, normal.x), hn::Set(d, normal.y), hn::Set(d, normal.z)};
+  for_each_vector(d, list, count, [&](std::size_t first, const TrianglePair* part) HWY_ATTR {
+    Corners<Tag> corners;
+    read_corners<&TrianglePair::a, Tag>(triangles, part, corners);
+    auto depth = hn::Inf(d);
+    for (const auto& corner : corners) {
+      const auto way = subtract<Tag>(corner, o);
+      // More than the roundings of the difference, the vector and the sum.
+      const auto slack = hn::Add(
+          hn::Mul(hn::Add(hn::Add(hn::Abs(way.x), hn::Abs(way.y)), hn::Abs(way.z)), hn::Set(d, 0x1p-48)),
+          hn::Set(d, 0x1p-1000));
+      const auto sure = hn::Sub(dot<Tag>(way, n), slack);
+      depth = hn::Min(depth, hn::IfThenElse(hn::Eq(sure, sure), sure, hn::Neg(hn::Inf(d))));
+    }
+    hn::StoreU(depth, d, least + first);
+  });
+}
+
 }  // namespace
 }  // namespace supple::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -99,10 +122,15 @@ HWY_AFTER_NAMESPACE();
 namespace supple {
 
 HWY_EXPORT(BoundDistances);
+HWY_EXPORT(BoundDepths);
 
 void bound_distances(std::span<const Vec3d> points, const PlacedTriangles& triangles,
                      std::span<const TrianglePair> list, double* lower, double* upper) {
   HWY_DYNAMIC_DISPATCH(BoundDistances)(points.data(), triangles, list.data(), list.size(), lower, upper);
+}
+void bound_depths(const Vec3d& origin, const Vec3d& normal, const PlacedTriangles& triangles,
+                  std::span<const TrianglePair> list, double* least) {
+  HWY_DYNAMIC_DISPATCH(BoundDepths)(origin, normal, triangles, list.data(), list.size(), least);
 }
 
 }  // namespace supple

@@ -14,4 +14,10 @@ namespace supple {
 void bound_distances(std::span<const Vec3d> points, const PlacedTriangles& triangles,
                      std::span<const TrianglePair> list, double* lower, double* upper);
 
+/// Writes for triangle `a` of each pair at most the least of the depths of its corners: the products of a
+/// unit vector, which may be rounded, and the way from `origin`. The array has space for a multiple of eight
+/// numbers.
+void bound_depths(const Vec3d& origin, const Vec3d& normal, const PlacedTriangles& triangles,
+                  std::span<const TrianglePair> list, double* least);
+
 }  // namespace supple

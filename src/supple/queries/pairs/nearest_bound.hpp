@@ -64,6 +64,7 @@ class NearestBound {
 
   TriangleDepths depths(Side side, const QueriedObject& object, std::uint32_t triangle) const;
   double depth(Side side, const QueryBox& box) const { return planes_[side].depth(box); }
+  const SupportPlane& plane(Side side) const { return planes_[side]; }
   /// Whether what is in the two boxes of these depths is farther apart.
   bool are_apart(const QueryBox& box_a, double depth_a, const QueryBox& box_b, double depth_b) const {
     return are_farther(planes_[a], box_a, depth_a, planes_[b], box_b, depth_b, distance_);

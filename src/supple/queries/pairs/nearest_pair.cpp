@@ -41,6 +41,29 @@ std::array<double, 3> weights_at(const Vec3d& point, const Feature& feature, con
   return distance_within(elements, any_distance, used_exact, DistanceAccuracy::rough)->barycentric_b;
 }
 
+/// Some triangles of a block, as their numbers.
+class TriangleList {
+ public:
+  TriangleList(std::uint32_t begin, std::uint64_t triangles) : begin_(begin) {
+    for (std::uint64_t left = triangles; left != 0; left &= left - 1)
+      list_[count_++] = {begin + static_cast<std::uint32_t>(std::countr_zero(left)), 0};
+  }
+  std::span<const TrianglePair> all() const { return std::span(list_).first(count_); }
+  /// The triangles for which `is_kept(place in the list)` is true.
+  template <class IsKept>
+  std::uint64_t keep(const IsKept& is_kept) const {
+    std::uint64_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      kept |= std::uint64_t{is_kept(i) ? 1u : 0u} << (list_[i].a - begin_);
+    return kept;
+  }
+
+ private:
+  std::uint32_t begin_;
+  std::size_t count_ = 0;
+  std::array<TrianglePair, leaf_block> list_;
+};
+
 }  // namespace
 
 void NearestPairSearch::start(const QueriedObject& a, const QueriedObject& b, Search search,
@@ -161,9 +184,9 @@ void NearestPairSearch::descend() {
   }
 }
 
-/// Whether the bound, which may be another one than when the entry was pushed, excludes it.
+/// Whether the bound excludes an entry, unless it is the one that did not when the entry was pushed.
 bool NearestPairSearch::are_apart(const Entry& entry) const {
-  if (!bound_.is_set()) return false;
+  if (!bound_.is_set() || entry.version == bound_.version()) return false;
   const QueryBox box_a = a_->child_box(entry.node_a, entry.child_a),
                  box_b = b_->child_box(entry.node_b, entry.child_b);
   return bound_.are_apart(box_a, bound_.depth(NearestBound::a, box_a), box_b,
@@ -195,8 +218,8 @@ void NearestPairSearch::expand(std::uint32_t node_a, int first_a, int end_a, std
       if (!(squares[place] <= squared_limit_) || child_box(boxes_b, k).empty()) continue;
       if (bound_.is_set() && bound_.are_apart(placed, depth_a, placed_b[place], depths_b[place])) continue;
       const double depth = depth_a + depths_b[place];
-      stack_.push_back(
-          {squares[place], depth == depth ? static_cast<float>(depth) : 0, node_a, node_b, i, k});
+      stack_.push_back({squares[place], depth == depth ? static_cast<float>(depth) : 0, node_a, node_b, i, k,
+                        bound_.is_set() ? bound_.version() : 0});
     }
   }
   std::sort(stack_.begin() + static_cast<std::ptrdiff_t>(first), stack_.end(),
@@ -231,16 +254,21 @@ void NearestPairSearch::test_leaves(const Entry& leaves) {
     // A copy, because the next call may overwrite it.
     const LeafBoxes boxes_a = recent_.block_of(0, a_->leaves(), leaf_a, begin_a,
                                                std::min(begin_a + leaf_block, end_a), load_leaf_boxes);
-    const std::uint64_t near_a =
-        within_limit(*a_, begin_a, near_triangles(box_b, boxes_a, squared_limit_), placed_b);
-    if (near_a == 0) continue;
+    const std::uint64_t all_near_a = near_triangles(box_b, boxes_a, squared_limit_);
+    if (all_near_a == 0) continue;
     for (std::uint32_t begin_b = node_b.first_triangle[leaves.child_b]; begin_b < end_b;
          begin_b += leaf_block) {
       const LeafBoxes& boxes_b = recent_.block_of(1, b_->leaves(), leaf_b, begin_b,
                                                   std::min(begin_b + leaf_block, end_b), load_leaf_boxes);
-      const std::uint64_t near_b =
-          within_limit(*b_, begin_b, near_triangles(box_a, boxes_b, squared_limit_), placed_a);
-      if (near_b != 0) test_blocks(boxes_a, near_a, begin_a, boxes_b, near_b, begin_b);
+      std::uint64_t near_a = all_near_a, near_b = near_triangles(box_a, boxes_b, squared_limit_);
+      if (near_b == 0) continue;
+      if (bound_.is_set()) {
+        if (are_known_excluded(begin_a, near_a, begin_b, near_b)) continue;
+        keep_near(begin_a, near_a, begin_b, near_b);
+      }
+      near_a = within_limit(*a_, begin_a, near_a, placed_b);
+      near_b = within_limit(*b_, begin_b, near_b, placed_a);
+      if (near_a != 0 && near_b != 0) test_blocks(boxes_a, near_a, begin_a, boxes_b, near_b, begin_b);
       if (is_done()) return;
     }
   }
@@ -258,17 +286,30 @@ std::uint64_t NearestPairSearch::within_limit(const QueriedObject& object, std::
   }
   const double radius = scaled_norm(half) * (1 + 0x1p-40);
   if (!(8 * radius < limit_) || !std::isfinite(limit_) || std::popcount(triangles) < many) return triangles;
-  std::array<TrianglePair, leaf_block> list;
   std::array<double, leaf_block> lower, upper;
-  std::size_t count = 0;
-  for (std::uint64_t left = triangles; left != 0; left &= left - 1)
-    list[count++] = {begin + static_cast<std::uint32_t>(std::countr_zero(left)), 0};
-  bound_distances({&middle, 1}, {object.view.arrays, object.view.translation}, std::span(list).first(count),
-                  lower.data(), upper.data());
-  for (std::size_t i = 0; i < count; ++i) {
-    if (lower[i] * (1 - 0x1p-40) - radius > limit_) triangles &= ~(std::uint64_t{1} << (list[i].a - begin));
-  }
-  return triangles;
+  const TriangleList list(begin, triangles);
+  bound_distances({&middle, 1}, {object.view.arrays, object.view.translation}, list.all(), lower.data(),
+                  upper.data());
+  return list.keep([&](std::size_t i) { return !(lower[i] * (1 - 0x1p-40) - radius > limit_); });
+}
+
+/// Keeps those triangles of two blocks that are not certainly farther apart than the nearest features from
+/// all of the other block.
+void NearestPairSearch::keep_near(std::uint32_t begin_a, std::uint64_t& near_a, std::uint32_t begin_b,
+                                  std::uint64_t& near_b) const {
+  const TriangleList list_a(begin_a, near_a), list_b(begin_b, near_b);
+  std::array<double, leaf_block> depths_a, depths_b;
+  const auto least_of = [&](NearestBound::Side side, const QueriedObject& object, const TriangleList& list,
+                            std::array<double, leaf_block>& depths) {
+    const SupportPlane& plane = bound_.plane(side);
+    bound_depths(plane.origin, plane.normal, {object.view.arrays, object.view.translation}, list.all(),
+                 depths.data());
+    return *std::min_element(depths.begin(), depths.begin() + list.all().size());
+  };
+  const double least_a = least_of(NearestBound::a, *a_, list_a, depths_a),
+               least_b = least_of(NearestBound::b, *b_, list_b, depths_b);
+  near_a = list_a.keep([&](std::size_t i) { return !(depths_a[i] + least_b > 0); });
+  near_b = list_b.keep([&](std::size_t i) { return !(least_a + depths_b[i] > 0); });
 }
 
 void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near_a, std::uint32_t begin_a,
@@ -284,11 +325,14 @@ void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near
       if (bound_.is_set()) {
         find_depths(NearestBound::a, begin_a, near_a, block_a_);
         find_depths(NearestBound::b, begin_b, near_b, block_b_);
-        // Many triangles at one place: none of them gives a better pair.
-        if (block_a_.least_of_all + block_b_.least_of_all > 0 ||
-            (block_a_.least_of_all >= 0 && block_b_.least_of_all >= 0 &&
-             bound_.excludes_equal(block_a_.level, block_b_.level)))
+        if (are_excluded(block_a_.all, block_b_.all)) {
+          for (const NearestBound::Side side : {NearestBound::a, NearestBound::b}) {
+            excluded_[side].resize((side == NearestBound::a ? *a_ : *b_).triangles.size() / 8 + 1);
+            const BlockSummary& all = (side == NearestBound::a ? block_a_ : block_b_).all;
+            excluded_[side][all.begin / 8] = all;
+          }
           return;
+        }
         if (block_a_.least[i] + block_b_.least[k] > 0 ||
             bound_.excludes(block_a_.depths[i], NearestBound::all_corners, block_b_.depths[k],
                             NearestBound::all_corners))
@@ -300,26 +344,37 @@ void NearestPairSearch::test_blocks(const LeafBoxes& boxes_a, std::uint64_t near
   }
 }
 
+/// Whether none of the triangles of two blocks gives a better pair, also when many are at one place.
+bool NearestPairSearch::are_excluded(const BlockSummary& a, const BlockSummary& b) const {
+  if (a.least + b.least > 0) return true;
+  return a.least >= 0 && b.least >= 0 && bound_.excludes_equal(a.level, b.level);
+}
+
+/// The same without a look at the triangles, for blocks that were excluded before.
+bool NearestPairSearch::are_known_excluded(std::uint32_t begin_a, std::uint64_t near_a, std::uint32_t begin_b,
+                                           std::uint64_t near_b) const {
+  if (excluded_[0].size() <= begin_a / 8 || excluded_[1].size() <= begin_b / 8) return false;
+  const BlockSummary &a = excluded_[0][begin_a / 8], &b = excluded_[1][begin_b / 8];
+  return a.is_known(begin_a, near_a, bound_.version()) && b.is_known(begin_b, near_b, bound_.version()) &&
+         are_excluded(a, b);
+}
+
 void NearestPairSearch::find_depths(NearestBound::Side side, std::uint32_t begin, std::uint64_t triangles,
                                     BlockDepths& block) {
-  const bool is_same = block.begin == begin && block.version == bound_.version();
-  if (is_same && (triangles & ~block.triangles) == 0) return;
-  block.begin = begin;
-  block.version = bound_.version();
-  block.triangles = triangles;
-  block.least_of_all = std::numeric_limits<double>::infinity();
-  block.level = {};
-  block.level.name.fill(std::numeric_limits<std::uint32_t>::max());
+  if (block.all.is_known(begin, triangles, bound_.version())) return;
+  block.all = {begin, triangles, bound_.version(), std::numeric_limits<double>::infinity(), {}};
+  TriangleLevel& least = block.all.level;
+  least.name.fill(std::numeric_limits<std::uint32_t>::max());
   const QueriedObject& object = side == NearestBound::a ? *a_ : *b_;
   for (std::uint64_t left = triangles; left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
     block.depths[i] = bound_.depths(side, object, begin + i);
     block.least[i] = block.depths[i].least(NearestBound::all_corners);
     const TriangleLevel& level = block.depths[i].level;
-    block.least_of_all = std::min(block.least_of_all, block.least[i]);
-    block.level.is_in_feature = block.level.is_in_feature && level.is_in_feature;
-    block.level.name = std::min(block.level.name, level.name);
-    block.level.least_vertex = std::min(block.level.least_vertex, level.least_vertex);
+    block.all.least = std::min(block.all.least, block.least[i]);
+    least.is_in_feature = least.is_in_feature && level.is_in_feature;
+    least.name = std::min(least.name, level.name);
+    least.least_vertex = std::min(least.least_vertex, level.least_vertex);
   }
 }
 

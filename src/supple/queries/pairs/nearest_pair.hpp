@@ -44,15 +44,23 @@ class NearestPairSearch {
     float square = 0, depth = 0;
     std::uint32_t node_a = 0, node_b = 0;
     int child_a = 0, child_b = 0;
+    std::uint64_t version = 0;  // of the bound that did not exclude it
   };
-  /// The triangles of a block of a leaf, as `bound_` sees them.
-  struct BlockDepths {
+  /// Triangles of a block of a leaf, as `bound_` sees all of them.
+  struct BlockSummary {
     std::uint32_t begin = 0;
     std::uint64_t triangles = 0, version = 0;
+    double least = 0;     // depth
+    TriangleLevel level;  // the least
+
+    bool is_known(std::uint32_t begins, std::uint64_t chosen, std::uint64_t current) const {
+      return begin == begins && version == current && (chosen & ~triangles) == 0;
+    }
+  };
+  struct BlockDepths {
+    BlockSummary all;
     std::array<TriangleDepths, leaf_block> depths;
     std::array<double, leaf_block> least;
-    double least_of_all = 0;
-    TriangleLevel level;  // the least
   };
   /// A vertex and a face, or two edges.
   struct ElementCandidate {
@@ -78,6 +86,11 @@ class NearestPairSearch {
                              const QueryBox& box) const;
   void test_blocks(const LeafBoxes& boxes_a, std::uint64_t near_a, std::uint32_t begin_a,
                    const LeafBoxes& boxes_b, std::uint64_t near_b, std::uint32_t begin_b);
+  bool are_excluded(const BlockSummary& a, const BlockSummary& b) const;
+  bool are_known_excluded(std::uint32_t begin_a, std::uint64_t near_a, std::uint32_t begin_b,
+                          std::uint64_t near_b) const;
+  void keep_near(std::uint32_t begin_a, std::uint64_t& near_a, std::uint32_t begin_b,
+                 std::uint64_t& near_b) const;
   void find_depths(NearestBound::Side side, std::uint32_t begin, std::uint64_t triangles, BlockDepths& block);
   void squared_distances_of(const Aabb& box, const QueryBox& placed, std::uint32_t node_b, int first, int end,
                             std::span<const QueryBox> placed_b, std::array<float, node_width>& squares) const;
@@ -110,6 +123,7 @@ class NearestPairSearch {
   ElementPoints best_elements_;
   NearestBound bound_;
   BlockDepths block_a_, block_b_;
+  std::array<std::vector<BlockSummary>, 2> excluded_;  // of blocks at one place, by an eighth of their begin
   std::vector<Entry> stack_;
   RecentElements<bool> farther_;  // elements that are farther apart than the nearest
   Candidates vertices_and_faces_, edges_;
