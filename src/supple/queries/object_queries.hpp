@@ -134,7 +134,7 @@ class ObjectQueries {
   std::vector<std::uint32_t> nodes_;
   RecentLeaves<LeafBoxes> recent_;
   RecentLeaves<LeafCorners> recent_corners_;
-  // Of a packet of points: triangles with the numbers of points, and their bounds; the candidates of a point.
+  // Triangles with the numbers of points, and their bounds; the candidates of each point.
   std::vector<TrianglePair> near_;
   std::vector<float> squares_;
   std::vector<double> lower_, upper_;

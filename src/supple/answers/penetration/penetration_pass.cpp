@@ -252,45 +252,71 @@ void PenetrationPass::renumber_curves(std::size_t i) {
 }
 
 bool PenetrationPass::find_depths(const StopSignal& stop, const Parallel& parallel) {
-  constexpr std::size_t grain = DistanceBatch::capacity;
-  parallel.for_ranges(new_penetrations_.size(), grain,
-                      [&](std::size_t begin, std::size_t end, std::uint32_t w) {
-                        workers_[w].queries.start();
-                        for (; begin < end && !stop.stop_requested(); begin += grain)
-                          find_depths(begin, std::min(begin + grain, end), workers_[w]);
-                      });
+  constexpr std::size_t grain = 1024;
+  parallel.for_ranges(
+      new_penetrations_.size(), grain, [&](std::size_t begin, std::size_t end, std::uint32_t w) {
+        const auto objects_of = [&](std::uint32_t i) {
+          return ObjectPair{found_.penetrations[i].object_a, found_.penetrations[i].object_b};
+        };
+        for (std::span open = std::span(new_penetrations_).subspan(begin, end - begin); !open.empty();) {
+          const ObjectPair objects = objects_of(open.front());
+          const auto next =
+              std::ranges::find_if(open, [&](std::uint32_t i) { return objects_of(i) != objects; });
+          std::span of_pair(open.begin(), next);
+          open = {next, open.end()};
+          sort_by_place(of_pair, workers_[w]);
+          workers_[w].queries.start();
+          for (std::size_t count = 0; !of_pair.empty() && !stop.stop_requested();
+               of_pair = of_pair.subspan(count)) {
+            count = std::min(DistanceBatch::capacity, of_pair.size());
+            find_depths(of_pair.first(count), workers_[w]);
+          }
+        }
+      });
   return !stop.stop_requested();
 }
 
-/// Takes at most `DistanceBatch::capacity` new penetrations.
-void PenetrationPass::find_depths(std::size_t begin, std::size_t end, Worker& worker) {
+/// Neighbours follow each other, because they descend together.
+void PenetrationPass::sort_by_place(std::span<std::uint32_t> penetrations, Worker& worker) const {
+  worker.numbers.assign(penetrations.begin(), penetrations.end());
+  worker.points.clear();
+  worker.order.clear();
+  for (const std::uint32_t i : penetrations) {
+    const Penetration& penetration = found_.penetrations[i];
+    worker.order.push_back({0, static_cast<std::uint32_t>(worker.points.size())});
+    worker.points.push_back(objects_[penetration.object_a.index].surface.position(penetration.vertex));
+  }
+  sort_along_curve(worker.order, worker.points);
+  for (std::size_t k = 0; k < penetrations.size(); ++k)
+    penetrations[k] = worker.numbers[worker.order[k].triangle];
+}
+
+/// Takes at most `DistanceBatch::capacity` penetrations of two objects.
+void PenetrationPass::find_depths(std::span<const std::uint32_t> penetrations, Worker& worker) {
   std::array<FoundFeatures, DistanceBatch::capacity> found;
   std::array<ElementDistance, DistanceBatch::capacity> distances;
   const auto penetration_of = [&](std::size_t i) -> Penetration& {
-    return found_.penetrations[new_penetrations_[i]];
+    return found_.penetrations[penetrations[i]];
   };
-  for (std::size_t i = begin; i < end;) {
-    const ObjectId outer = penetration_of(i).object_b;
-    if (i > 0 && penetration_of(i - 1).object_b != outer) worker.queries.start();
+  const std::span outer(&objects_[penetration_of(0).object_b.index].queried, 1);
+  const SurfaceView& inner = objects_[penetration_of(0).object_a.index].surface;
+  for (std::size_t i = 0; i < penetrations.size();) {
     std::array<Vec3d, PointPacket::capacity> points;
     std::array<std::optional<FoundTriangle>, PointPacket::capacity> nearest;
-    std::size_t count = 0;
-    for (; count < points.size() && i + count < end && penetration_of(i + count).object_b == outer; ++count) {
-      const Penetration& penetration = penetration_of(i + count);
-      points[count] = objects_[penetration.object_a.index].surface.position(penetration.vertex);
-    }
-    worker.queries.nearest(std::span(&objects_[outer.index].queried, 1), std::span(points).first(count),
-                           std::numeric_limits<double>::infinity(), nearest);
+    const std::size_t count = std::min(points.size(), penetrations.size() - i);
+    for (std::size_t k = 0; k < count; ++k) points[k] = inner.position(penetration_of(i + k).vertex);
+    worker.queries.nearest(outer, std::span(points).first(count), std::numeric_limits<double>::infinity(),
+                           nearest);
     // There is one, because the vertex is inside.
     for (std::size_t k = 0; k < count; ++k, ++i) {
       penetration_of(i).triangle = nearest[k]->id;
-      found[i - begin] = {nearest[k]->elements(), {}};
+      found[i] = {nearest[k]->elements(), {}};
     }
   }
-  worker.distances.find(std::span(found).first(end - begin), distances);
-  for (std::size_t i = begin; i < end; ++i) {
-    Penetration& penetration = found_.penetrations[new_penetrations_[i]];
-    const ElementDistance& distance = distances[i - begin];
+  worker.distances.find(std::span(found).first(penetrations.size()), distances);
+  for (std::size_t i = 0; i < penetrations.size(); ++i) {
+    Penetration& penetration = penetration_of(i);
+    const ElementDistance& distance = distances[i];
     penetration.feature = distance.on_b;
     penetration.depth = distance.distance;
     penetration.barycentric = distance.barycentric_b;

@@ -14,6 +14,7 @@
 #include "core/parallel.hpp"
 #include "core/stop_signal.hpp"
 #include "mesh/vertex_sets.hpp"
+#include "octree/morton_curve.hpp"
 #include "queries/object_queries.hpp"
 #include "supple/options.hpp"
 #include "supple/penetration.hpp"
@@ -108,6 +109,10 @@ class PenetrationPass {
     ObjectQueries queries;
     DistanceBatch distances;
     PenetrationLists found;
+    // Scratch of `sort_by_place`.
+    std::vector<std::uint32_t> numbers;
+    std::vector<Vec3d> points;
+    std::vector<CurvePlace> order;
     // Scratch of one task.
     std::vector<std::uint32_t> inside;
     std::vector<std::array<std::uint32_t, 2>> cut_edges;
@@ -129,7 +134,8 @@ class PenetrationPass {
   void copy_found(std::size_t i);
   void renumber_curves(std::size_t i);
   bool find_depths(const StopSignal& stop, const Parallel& parallel);
-  void find_depths(std::size_t begin, std::size_t end, Worker& worker);
+  void sort_by_place(std::span<std::uint32_t> penetrations, Worker& worker) const;
+  void find_depths(std::span<const std::uint32_t> penetrations, Worker& worker);
 
   std::span<const PenetratedObject> objects_;
   bool with_curves_ = false;
