@@ -286,7 +286,7 @@ void PenetrationPass::sort_by_place(std::span<std::uint32_t> penetrations, Worke
     worker.order.push_back({0, static_cast<std::uint32_t>(worker.points.size())});
     worker.points.push_back(objects_[penetration.object_a.index].surface.position(penetration.vertex));
   }
-  sort_along_curve(worker.order, worker.points);
+  sort_along_curve(worker.order, worker.points, worker.memory);
   for (std::size_t k = 0; k < penetrations.size(); ++k)
     penetrations[k] = worker.numbers[worker.order[k].triangle];
 }

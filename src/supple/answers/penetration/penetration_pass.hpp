@@ -112,7 +112,7 @@ class PenetrationPass {
     // Scratch of `sort_by_place`.
     std::vector<std::uint32_t> numbers;
     std::vector<Vec3d> points;
-    std::vector<CurvePlace> order;
+    std::vector<CurvePlace> order, memory;
     // Scratch of one task.
     std::vector<std::uint32_t> inside;
     std::vector<std::array<std::uint32_t, 2>> cut_edges;
