@@ -44,8 +44,9 @@ struct Question {
     const bool only_intersections = with_included(contacts) == ContactKinds::intersection;
     return {searches_at_rest(), reads(SearchedShape::paths), reads(SearchedShape::margins),
             lazy_refit && (contacts == ContactKinds::none || only_intersections),
-            // Colliding vertices and separations need all overlapping leaves, so nothing may be culled.
-            searches_at_rest() && !colliding_vertices, is_continuous() && impact.impact.min_separation == 0};
+            // Colliding vertices and distances need all overlapping leaves, so nothing may be culled.
+            searches_at_rest() && !colliding_vertices,
+            is_continuous() && impact.impact.min_separation == 0 && !safe_step};
   }
 
   bool may_pair(const World& world, const IndexPair& pair) const {

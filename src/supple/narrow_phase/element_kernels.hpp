@@ -81,6 +81,9 @@ struct PartOfStep {
   /// For objects at rest: also tests edges against faces, with this separation of their boxes, which covers
   /// only the rounding errors. Negative: does not.
   float crossing_separation = -1;
+  /// Elements move so little against each other that the separation covers it: only boxes at the start count.
+  bool at_start = false;
+  float size = 0;  ///< of the leaves
 
   /// Whether boxes stay as they are: the whole step, with neither a separation nor an offset.
   bool keeps_boxes() const { return !(separation > 0 || latest < 1) && offset == Vec3f{}; }
@@ -111,7 +114,12 @@ struct MovingBoxCache {
 
   MovingBoxCache() { clear(); }
   void clear() {
-    for (Side* const side : {&a, &b, &crossing}) {
+    clear_b();
+    for (Kind* const kind : {&a.vertices, &a.edges, &a.faces}) kind->first_elements.fill(~std::uint32_t{0});
+  }
+  /// For another separation.
+  void clear_b() {
+    for (Side* const side : {&b, &crossing}) {
       for (Kind* const kind : {&side->vertices, &side->edges, &side->faces})
         kind->first_elements.fill(~std::uint32_t{0});
     }

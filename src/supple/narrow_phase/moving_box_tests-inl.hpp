@@ -94,9 +94,9 @@ HWY_NOINLINE MovingBox moving_box(const MovingBoxArrays& boxes, std::size_t i, c
   return box;
 }
 
-/// Whether both objects are at rest, so that the ends of the step are the same.
+/// Whether the ends of the step are the same or only its start counts.
 HWY_INLINE bool are_at_rest(const MovingView& a, const MovingView& b, const PartOfStep& part) {
-  return a.start == a.end && b.start == b.end && !(part.latest < 1);
+  return part.at_start || (a.start == a.end && b.start == b.end && !(part.latest < 1));
 }
 
 HWY_INLINE MovingBoxArrays child_boxes(const MovingView& view, std::uint32_t node, bool at_rest) {

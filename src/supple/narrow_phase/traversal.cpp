@@ -34,77 +34,94 @@ double largest_approach(const Aabb& way_a, const Aabb& way_b, bool any_parts) {
   return std::sqrt(square) * (1 + 0x1p-40);
 }
 
-/// Whether two children stay farther apart along an axis than the separation of the part of the step: on the
-/// same side at both ends.
+/// The boxes of two children: that of a at the start and at the end, and that of b.
+std::array<Aabb, 4> boxes_in_motion(const ObjectPairView& pair, const ChildPair& children) {
+  const auto& [a, b, i, j] = children;
+  return {child_box(pair.a.moving.start[a], i), child_box(pair.a.moving.end[a], i),
+          child_box(pair.b.moving.start[b], j), child_box(pair.b.moving.end[b], j)};
+}
+
+/// Distances from a to b along an axis, above and below; negative where they overlap.
+std::array<double, 2> gaps(const Aabb& a, const Aabb& b, int axis, double offset_of_b) {
+  return {b.min[axis] + offset_of_b - a.max[axis], a.min[axis] - offset_of_b - b.max[axis]};
+}
+
+/// The middle one of the sizes along the axes.
+double middle_size(const Aabb& box) {
+  const double x = double{box.max.x} - box.min.x, y = double{box.max.y} - box.min.y,
+               z = double{box.max.z} - box.min.z;
+  return std::max(std::min(x, y), std::min(std::max(x, y), z));
+}
+
+/// A time before which two children stay farther apart along an axis than the separation; later than 1 when
+/// in the whole step. The gaps between their boxes and the separation are linear in time. Gaps take a few
+/// roundings of 2^-53 of the coordinates' magnitudes, for which 2^-50 of their sum has room.
 ///
 /// With `any_parts`, the boxes at the start count. The separation is s + W / (1 - keep), where W is the sum
 /// of both ways. Elements at a larger distance keep enough of it. The others keep at most s + keep W / (1 -
 /// keep), which is W less than the separation. So the gap must be that, plus what both move towards each
 /// other along the axis.
-bool stay_apart(const ObjectPairView& pair, const PartOfStep& part, std::uint32_t node_a, int child_a,
-                std::uint32_t node_b, int child_b) {
-  const Aabb a0 = child_box(pair.a.moving.start[node_a], child_a),
-             a1 = child_box(pair.a.moving.end[node_a], child_a),
-             b0 = child_box(pair.b.moving.start[node_b], child_b),
-             b1 = child_box(pair.b.moving.end[node_b], child_b);
-  const Aabb way_a = way_of(pair.a, node_a, child_a), way_b = way_of(pair.b, node_b, child_b);
-  const double both_ways = pair.any_parts ? largest_approach(way_a, way_b, true) : 0;
-  const auto at_end = [&](float start, float end) {
-    return (1 - double{part.latest}) * start + double{part.latest} * end;
-  };
+double first_time_near(const ObjectPairView& pair, const ChildPair& children) {
+  constexpr double never = 2;
+  const auto [a0, a1, b0, b1] = boxes_in_motion(pair, children);
+  if (a0.empty() || b0.empty()) return never;
   const auto size_of = [](const Aabb& a, const Aabb& b, int axis) {
     return std::fabs(double{a.min[axis]}) + std::fabs(double{a.max[axis]}) + std::fabs(double{b.min[axis]}) +
            std::fabs(double{b.max[axis]});
   };
+  double time = 0, approach = -1;
+  Aabb way_a, way_b;
   for (int axis = 0; axis < 3; ++axis) {
-    const double offset = part.offset[axis], size_at_end = size_of(a1, b1, axis);
-    // A bound at the end of the range of float may be farther out.
-    if (part.latest < 1 && !(size_at_end < std::numeric_limits<float>::max())) continue;
-    const double size = size_of(a0, b0, axis) + part.latest * size_at_end + std::fabs(offset);
-    const double least = part.separation + 0x1p-50 * size;
-    const double above_start = b0.min[axis] + offset - a0.max[axis],
-                 above_end = at_end(b0.min[axis], b1.min[axis]) + offset - at_end(a0.max[axis], a1.max[axis]);
-    const double below_start = a0.min[axis] - b0.max[axis] - offset,
-                 below_end = at_end(a0.min[axis], a1.min[axis]) - at_end(b0.max[axis], b1.max[axis]) - offset;
-    if (pair.any_parts) {
-      const double to_above = std::max(way_a.max[axis], 0.0f) + std::max(-double{way_b.min[axis]}, 0.0),
-                   to_below = std::max(-double{way_a.min[axis]}, 0.0) + std::max(way_b.max[axis], 0.0f);
-      const auto least_to = [&](double towards) {
-        return least - (1 - 0x1p-20) * part.latest * std::max(both_ways * (1 - 0x1p-20) - towards, 0.0);
-      };
-      if (above_start > least_to(to_above) || below_start > least_to(to_below)) return true;
-    } else if ((above_start > least && above_end > least) || (below_start > least && below_end > least)) {
-      return true;
+    const double offset = pair.placement.offset[axis];
+    const std::array<double, 2> starts = gaps(a0, b0, axis, offset);
+    const std::size_t side = starts[0] > starts[1] ? 0 : 1;
+    if (!(starts[side] > pair.separation)) continue;
+    if (approach < 0 && pair.kept_share > 0) {
+      way_a = way_of(pair.a, children.node_a, children.child_a);
+      way_b = way_of(pair.b, children.node_b, children.child_b);
+      approach = largest_approach(way_a, way_b, pair.any_parts);
     }
+    double wanted = (pair.growth + pair.kept_share * approach) * (1 + 0x1p-20);
+    if (pair.any_parts) {
+      const double towards = side == 0
+                                 ? std::max(way_a.max[axis], 0.0f) + std::max(-double{way_b.min[axis]}, 0.0)
+                                 : std::max(-double{way_a.min[axis]}, 0.0) + std::max(way_b.max[axis], 0.0f);
+      wanted -= (1 - 0x1p-20) * std::max(approach * (1 - 0x1p-20) - towards, 0.0);
+    }
+    const double gap_at_end = pair.any_parts ? starts[side] : gaps(a1, b1, axis, offset)[side];
+    const double size_at_end = size_of(a1, b1, axis);
+    const double least =
+        pair.separation + 0x1p-50 * (size_of(a0, b0, axis) + size_at_end + std::fabs(offset));
+    const double at_start = starts[side] - least, at_end = gap_at_end - least - wanted;
+    if (!(at_start > 0)) continue;
+    if (at_end > 0) return never;
+    // A bound at the end of the range of float may be farther out.
+    if (size_at_end < std::numeric_limits<float>::max())
+      time = std::max(time, at_start / (at_start - at_end) * (1 - 0x1p-40));
   }
-  return false;
+  return time;
 }
 
-/// As `moving_overlap_masks`, with a separation of each pair of children.
-std::uint64_t masks_of_near_children(const ObjectPairView& pair, const NodePair& nodes) {
-  const OctreeNode &a = pair.a.nodes[nodes.a], &b = pair.b.nodes[nodes.b];
+/// Bits of children that may come near, by the separation of their nodes, which is enough for all children.
+std::uint64_t mask_of_nodes(const ObjectPairView& pair, const NodePair& nodes) {
   std::uint64_t near = ~std::uint64_t{0};
-  if (nodes.a != 0 && nodes.b != 0) {  // the separation of both nodes is enough for all of their children
-    const PartOfStep part = pair.part_of_step(a.parent, a.index_in_parent, b.parent, b.index_in_parent);
-    moving_overlap_masks({&nodes, 1}, pair.a.moving, pair.b.moving, part, &near);
+  PartOfStep part = pair.part_of_step();
+  if (pair.kept_share > 0) {
+    if (nodes.a == 0 || nodes.b == 0) return near;
+    const OctreeNode &a = pair.a.nodes[nodes.a], &b = pair.b.nodes[nodes.b];
+    part = pair.part_until({a.parent, b.parent, a.index_in_parent, b.index_in_parent}, part.latest);
   }
-  const std::uint32_t children_a = nodes.children_a & a.child_mask(),
-                      children_b = nodes.children_b & b.child_mask();
-  std::uint64_t mask = 0;
-  for (; near != 0; near &= near - 1) {
-    const int place = std::countr_zero(near), i = place / node_width, j = place % node_width;
-    if ((children_a >> i & children_b >> j & 1) == 0) continue;
-    if (child_box(pair.a.moving.start[nodes.a], i).empty() ||
-        child_box(pair.b.moving.start[nodes.b], j).empty())
-      continue;
-    if (!stay_apart(pair, pair.part_of_step(nodes.a, i, nodes.b, j), nodes.a, i, nodes.b, j))
-      mask |= std::uint64_t{1} << place;
-  }
-  return mask;
+  moving_overlap_masks({&nodes, 1}, pair.a.moving, pair.b.moving, part, &near);
+  return near;
 }
 
 std::uint8_t child_bit(int child) {
   return static_cast<std::uint8_t>(1u << child);
+}
+
+std::uint64_t count_of_tests(const ObjectPairView& pair, const NodePair& nodes) {
+  return std::uint64_t{bit_count(nodes.children_a & pair.a.nodes[nodes.a].child_mask())} *
+         bit_count(nodes.children_b & pair.b.nodes[nodes.b].child_mask());
 }
 
 /// Returns the number of tests.
@@ -117,13 +134,9 @@ std::uint64_t test_children(const ObjectPairView& pair, std::span<const NodePair
       masks[k] = methods.mask_one_side_first(pair, node_pairs[k], tests);
     return tests;
   }
-  for (const NodePair& nodes : node_pairs) {
-    tests += std::uint64_t{bit_count(nodes.children_a & pair.a.nodes[nodes.a].child_mask())} *
-             bit_count(nodes.children_b & pair.b.nodes[nodes.b].child_mask());
-  }
+  for (const NodePair& nodes : node_pairs) tests += count_of_tests(pair, nodes);
   if (pair.is_moving() && pair.kept_share > 0) {
-    for (std::size_t k = 0; k < node_pairs.size(); ++k)
-      masks[k] = masks_of_near_children(pair, node_pairs[k]);
+    for (std::size_t k = 0; k < node_pairs.size(); ++k) masks[k] = mask_of_nodes(pair, node_pairs[k]);
   } else if (pair.is_moving()) {
     moving_overlap_masks(node_pairs, pair.a.moving, pair.b.moving, pair.part_of_step(), masks);
   } else {
@@ -169,6 +182,14 @@ void for_each_child_pair(const ObjectPairView& pair, NodePair node_pair, std::ui
 
 std::uint32_t leaf_number(std::uint32_t node, int child) {
   return node * node_width + static_cast<std::uint32_t>(child);
+}
+
+LeafPair leaf_pair(const ObjectPairView& pair, const ChildPair& leaves) {
+  const auto& [a, b, i, j] = leaves;
+  const OctreeNode &node_a = pair.a.nodes[a], &node_b = pair.b.nodes[b];
+  return {node_a.first_triangle[i], node_a.first_triangle[i + 1],
+          node_b.first_triangle[j], node_b.first_triangle[j + 1],
+          leaf_number(a, i),        leaf_number(b, j)};
 }
 
 /// Largest absolute coordinate of the box; 0 when it is empty.
@@ -224,14 +245,32 @@ OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& ele
   return view;
 }
 
-PartOfStep ObjectPairView::part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b,
-                                        int child_b) const {
-  PartOfStep part = part_of_step();
-  if (kept_share == 0) return part;
-  const double approach = largest_approach(way_of(a, node_a, child_a), way_of(b, node_b, child_b), any_parts);
+/// With `at_start`, coordinates of two elements come nearer by at most the approach until then. So elements
+/// whose boxes at the start are farther apart than it plus the separation stay apart.
+PartOfStep ObjectPairView::part_until(const ChildPair& children, float until) const {
+  PartOfStep part{separation, until, placement.offset, kinds, -1};
+  const auto has_ways = [](const OctreeView& view) {
+    return view.ways != nullptr || view.moving.start == view.moving.end;
+  };
+  if (!has_ways(a) || !has_ways(b)) {
+    part.separation = growth > 0 ? round_up(separation + growth * until) : separation;
+    return part;
+  }
+  const double approach = until * largest_approach(way_of(a, children.node_a, children.child_a),
+                                                   way_of(b, children.node_b, children.child_b), any_parts);
+  double grown = separation + until * growth + (kept_share > 0 ? kept_share * approach : 0);
+  const double size = std::min(middle_size(child_box(a.moving.start[children.node_a], children.child_a)),
+                               middle_size(child_box(b.moving.start[children.node_b], children.child_b)));
+  constexpr double little = 1.0 / 32;
+  part.size = static_cast<float>(size);
+  part.at_start = approach <= little * size;
+  if (part.at_start) {
+    grown += approach;
+    part.latest = 1;
+  }
   // Beyond the range of float, boxes do not say how far elements are apart.
   constexpr double most = std::numeric_limits<float>::max() / 4;
-  const double grown = (part.separation + kept_share * part.latest * approach) * (1 + 0x1p-20);
+  grown *= 1 + 0x1p-20;
   part.separation = grown <= most ? round_up(grown) : std::numeric_limits<float>::infinity();
   return part;
 }
@@ -279,18 +318,58 @@ void Traversal::expand_batch(const ObjectPairView& pair, TraversalStats& stats) 
   stats.node_pairs_visited += count;
   for (std::size_t k = 0; k < count; ++k) {
     const NodePair node_pair = batch_[k];
-    const OctreeNode& node_a = pair.a.nodes[node_pair.a];
-    const OctreeNode& node_b = pair.b.nodes[node_pair.b];
     for_each_child_pair(pair, node_pair, masks_[k], [&](int i, int j) {
       if (const auto below = nodes_below(pair, {node_pair.a, node_pair.b, i, j})) {
         stack_.push_back(*below);
       } else {
-        leaf_pairs_.push_back({node_a.first_triangle[i], node_a.first_triangle[i + 1],
-                               node_b.first_triangle[j], node_b.first_triangle[j + 1],
-                               leaf_number(node_pair.a, i), leaf_number(node_pair.b, j)});
+        leaf_pairs_.push_back(leaf_pair(pair, {node_pair.a, node_pair.b, i, j}));
       }
     });
   }
+}
+
+void Traversal::wait(double time, const NodePair& nodes) {
+  waiting_.push_back({time, waited_++, nodes});
+  std::push_heap(waiting_.begin(), waiting_.end());
+}
+
+std::optional<Traversal::LeavesInTime> Traversal::next_leaves(const ObjectPairView& pair,
+                                                              TraversalStats& stats) {
+  while (!waiting_.empty() && !stop_.stop_requested()) {
+    std::pop_heap(waiting_.begin(), waiting_.end());
+    const auto [time, number, nodes] = waiting_.back();
+    waiting_.pop_back();
+    const float latest = pair.latest->load(std::memory_order_relaxed);
+    if (time > latest) break;
+    const OctreeNode &node_a = pair.a.nodes[nodes.a], &node_b = pair.b.nodes[nodes.b];
+    const int i = std::countr_zero(nodes.children_a), j = std::countr_zero(nodes.children_b);
+    if (nodes.children_a == child_bit(i) && nodes.children_b == child_bit(j) && !node_a.is_inner(i) &&
+        !node_b.is_inner(j)) {
+      const ChildPair leaves{nodes.a, nodes.b, i, j};
+      const auto [a0, a1, b0, b1] = boxes_in_motion(pair, leaves);
+      double approach = 0, size = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::array<double, 2> starts = gaps(a0, b0, axis, 0), ends = gaps(a1, b1, axis, 0);
+        approach = std::max({approach, std::fabs(ends[0] - starts[0]), std::fabs(ends[1] - starts[1])});
+        size = std::max({size, double{a0.max[axis]} - a0.min[axis], double{b0.max[axis]} - b0.min[axis]});
+      }
+      const double end = time + std::max(time, 0.25 * size / std::max(approach, 1e-300));
+      const float until = end < 0.5 && !pair.any_parts ? std::max(round_up(end), least_part_of_step) : 1;
+      if (until < latest) wait(until, nodes);
+      const float part = std::max(std::min(until, latest), least_part_of_step);
+      return LeavesInTime{leaf_pair(pair, leaves), pair.part_until(leaves, part), part};
+    }
+    stats.volumes_tested += count_of_tests(pair, nodes);
+    ++stats.node_pairs_visited;
+    for_each_child_pair(pair, nodes, mask_of_nodes(pair, nodes), [&](int child_a, int child_b) {
+      const ChildPair children{nodes.a, nodes.b, child_a, child_b};
+      const double first = first_time_near(pair, children);
+      if (first > latest) return;
+      const NodePair leaves{nodes.a, nodes.b, child_bit(child_a), child_bit(child_b)};
+      wait(first, nodes_below(pair, children).value_or(leaves));
+    });
+  }
+  return std::nullopt;
 }
 
 void Traversal::refine(const ObjectPairView& pair, NodePair node_pair, std::vector<NodePair>& finer) {

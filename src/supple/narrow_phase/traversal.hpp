@@ -42,6 +42,12 @@ OctreeView view_of(const ObjectOctree& octree, const VertexBuffer& vertices,
 OctreeView moving_view_of(const ObjectOctree& octree, const SurfaceElements& elements,
                           const MovingBoxes& boxes, Vec3d translation);
 
+/// Two children that the descent compares.
+struct ChildPair {
+  std::uint32_t node_a = 0, node_b = 0;
+  int child_a = 0, child_b = 0;
+};
+
 /// Two objects, or one with itself: with `same_object`, a and b are the same view.
 struct ObjectPairView {
   OctreeView a, b;
@@ -52,6 +58,8 @@ struct ObjectPairView {
   float separation = 0;
   /// Null, or the time in the step until which contacts are of interest. It may decrease during the search.
   const std::atomic<float>* latest = nullptr;
+  /// The search passes on elements that may come near soon first; it may repeat pairs. Needs `latest`.
+  bool soonest_first = false;
   /// Added to the separation, times that time.
   double growth = 0;
   /// Share of the largest approach of two vertices of two children that is added to their separation.
@@ -71,8 +79,8 @@ struct ObjectPairView {
     return {growth > 0 ? round_up(separation + growth * until) : separation, until, placement.offset, kinds,
             with_crossings ? placement.slop : -1};
   }
-  /// The same for two children, with the separation that `kept_share` asks for.
-  PartOfStep part_of_step(std::uint32_t node_a, int child_a, std::uint32_t node_b, int child_b) const;
+  /// The same for two children and a time, with the separation that `kept_share` asks for.
+  PartOfStep part_until(const ChildPair& children, float until) const;
   bool is_moving() const { return a.moving.start != nullptr; }
 };
 /// One object with itself when both are the same view. `separation` ≥ 0, not NaN, is for moving views.
@@ -89,11 +97,6 @@ struct TraversalStats {
   std::uint64_t vertex_face_candidates = 0, edge_edge_candidates = 0;
 };
 
-/// Two children that the descent compares.
-struct ChildPair {
-  std::uint32_t node_a = 0, node_b = 0;
-  int child_a = 0, child_b = 0;
-};
 /// One step of the descent: the pairs of children of two nodes whose volumes overlap.
 void find_overlapping_children(const ObjectPairView& pair, NodePair node_pair,
                                std::vector<ChildPair>& children);
@@ -109,6 +112,8 @@ class Traversal {
  public:
   /// After a request to stop, searches end early with part of the results.
   void set_stop(const StopSignal& stop) { stop_ = stop; }
+  /// The part of the step in which the pairs come near that the sink has; other pairs may follow.
+  float until() const { return until_; }
 
   /// Calls `sink(std::span<const TrianglePair>)` with batches of candidates, numbered in octree order: all
   /// triangle pairs below `root` whose boxes overlap. A default `NodePair` is the root of both trees. Calls
@@ -129,7 +134,8 @@ class Traversal {
   /// at most `ElementPairBatches::capacity` candidates, numbered in octree order. These are all vertex-face,
   /// face-vertex and edge-edge pairs, except those whose boxes are apart by more than the separation on the
   /// same side of one axis at both ends of the step. For one object with itself, pairs that share a vertex
-  /// and the kind `face_vertex` do not occur. Each pair occurs once among all roots of a `refine`.
+  /// and the kind `face_vertex` do not occur. Each pair occurs once among all roots of a `refine`, except
+  /// with `soonest_first`.
   template <class Sink>
   void find_element_pairs(const ObjectPairView& pair, NodePair root, TraversalStats& stats, Sink&& sink) {
     find_element_pairs(pair, root, stats, sink, [](bool, std::span<const ElementPair>) {});
@@ -156,25 +162,13 @@ class Traversal {
       stats.volumes_tested += find_element_box_pairs(leaves, pair.a.moving, pair.b.moving, part,
                                                      pair.same_object, *element_boxes_, element_pairs_);
     };
-    descend(pair, root, stats, [&](std::span<const LeafPair> leaves) {
-      constexpr std::size_t few = 8;  // so that they see a time that has decreased
-      const std::size_t step = pair.latest != nullptr ? few : leaves.size();
-      for (std::size_t i = 0; pair.kept_share == 0 && i < leaves.size(); i += step)
-        find_pairs(leaves.subspan(i, std::min(step, leaves.size() - i)), pair.part_of_step());
-      if (pair.kept_share == 0) return;
-      PartOfStep part;  // a little larger than those of the leaves, so that many have the same boxes
-      part.separation = -1;
-      for (const LeafPair& leaf_pair : leaves) {
-        const PartOfStep own = part_of_step(pair, leaf_pair);
-        if (own.latest != part.latest || !(own.separation <= part.separation) ||
-            own.separation < 0.5f * part.separation) {
-          part = own;
-          part.separation *= 1.125f;
-          element_boxes_->clear();
-        }
-        find_pairs({&leaf_pair, 1}, part);
-      }
-    });
+    until_ = 1;
+    if (!pair.soonest_first) {
+      descend(pair, root, stats,
+              [&](std::span<const LeafPair> leaves) { find_pairs(leaves, pair.part_of_step()); });
+    } else if (!pair.a.nodes.empty() && !pair.b.nodes.empty()) {
+      find_in_time(pair, root, stats, find_pairs);
+    }
     element_pairs_.flush();
   }
 
@@ -194,10 +188,52 @@ class Traversal {
   static constexpr std::size_t leaf_batch = 256;
   static constexpr std::size_t candidate_batch = 1024;
 
-  static PartOfStep part_of_step(const ObjectPairView& pair, const LeafPair& leaves) {
-    return pair.part_of_step(leaves.leaf_a / node_width, static_cast<int>(leaves.leaf_a % node_width),
-                             leaves.leaf_b / node_width, static_cast<int>(leaves.leaf_b % node_width));
+  /// What waits for its time: elements of the nodes come near no earlier.
+  struct Waiting {
+    double time;
+    std::uint32_t number;  ///< the last of those with the same time comes first
+    NodePair nodes;
+    bool operator<(const Waiting& other) const {
+      return time != other.time ? time > other.time : number < other.number;
+    }
+  };
+  struct LeavesInTime {
+    LeafPair leaves;
+    PartOfStep part;
+    float until;
+  };
+  void wait(double time, const NodePair& nodes);
+  /// The two leaves whose elements may come near first. They wait again for the time after the part.
+  std::optional<LeavesInTime> next_leaves(const ObjectPairView& pair, TraversalStats& stats);
+
+  /// Passes on pairs of elements in about the order of the times at which they may come near, so that
+  /// `latest` decreases soon.
+  template <class FindPairs>
+  void find_in_time(const ObjectPairView& pair, NodePair root, TraversalStats& stats,
+                    const FindPairs& find_pairs) {
+    PartOfStep part;  // a little larger than those of the leaves, so that many have the same boxes
+    part.separation = -1;
+    until_ = 0;
+    waiting_.clear();
+    wait(0, root);
+    for (int count = 1; const auto next = next_leaves(pair, stats); ++count) {
+      const PartOfStep& own = next->part;
+      const bool is_same_time = own.latest == part.latest && own.at_start == part.at_start;
+      if (!is_same_time || !(own.separation <= part.separation) ||
+          (own.separation < 0.5f * part.separation && !(part.separation < own.size / 64))) {
+        is_same_time ? element_boxes_->clear_b() : element_boxes_->clear();
+        part = own;
+        if (pair.kept_share > 0) part.separation *= 1.125f;
+      }
+      until_ = std::max(until_, next->until);
+      find_pairs({&next->leaves, 1}, part);
+      constexpr int few = 8;  // so that they see a time that has decreased
+      if (count % few != 0 && !(next->until < pair.latest->load(std::memory_order_relaxed))) continue;
+      element_pairs_.flush();
+      until_ = 0;
+    }
   }
+
   void expand_batch(const ObjectPairView& pair, TraversalStats& stats);
 
   /// Calls `on_leaves` with batches of the leaf pairs below `root`.
@@ -236,6 +272,9 @@ class Traversal {
 
   StopSignal stop_;
   std::vector<NodePair> stack_;
+  std::vector<Waiting> waiting_;  // a heap
+  std::uint32_t waited_ = 0;
+  float until_ = 1;
   std::array<std::uint64_t, node_batch> masks_;
   std::array<NodePair, node_batch> batch_;
   std::vector<LeafPair> leaf_pairs_;

@@ -80,7 +80,7 @@ void expect_bounded(const std::vector<Body>& bodies, const std::vector<double>& 
 
 TEST(StepWork, DoesNotGrowWithTheLengthOfTheStep) {
   RandomNumbers random(1);
-  const std::vector<double> lengths{1e-3, 1e-2, 1e-1, 1.0};
+  const std::vector<double> lengths{1e-3, 1e-2, 1e-1, 1.0, 1e2};
   const TriangleMesh beam = make_box({4, 0.5, 0.5}, 3), ball = make_icosphere(6);
   expect_bounded({body(beam, {}, {}, 1, random), body(beam, {0, 0.6, 0}, {}, 1, random)}, lengths, "beams");
   expect_bounded({body(make_cloth(16, 16), {}, {}, 1, random)}, lengths, "cloth");

@@ -149,7 +149,6 @@ void ImpactPass::search_until(Search search, float until, const Parallel& parall
 
 ImpactOptions ImpactPass::impact_of_job(std::uint32_t job) const {
   ImpactOptions impact = options_.impact;
-  if (search_ == Search::touching) return {.exact = impact.exact};
   impact.min_separation = separation_of(impact.min_separation, objects_[jobs_[job].a].min_separation,
                                         objects_[jobs_[job].b].min_separation);
   return impact;
@@ -165,7 +164,8 @@ ObjectPairView ImpactPass::view_of_job(std::uint32_t job) const {
   pair.any_parts = search_ == Search::free;
   if (distance > 0 || pair.growth > 0 || pair.kept_share > 0) pair.a.culled = nullptr;
   pair.kinds = options_.kinds;
-  if (latest_of(job) < 1 || search_ != Search::all) pair.latest = &latest_of(job);
+  pair.soonest_first = search_ != Search::all;
+  if (latest_of(job) < 1 || pair.soonest_first) pair.latest = &latest_of(job);
   return pair;
 }
 
@@ -200,7 +200,7 @@ void ImpactPass::test_candidates(std::uint32_t job, ElementPairKind kind,
        candidates = candidates.subspan(std::min(block_size, candidates.size()))) {
     const auto part = candidates.first(std::min(block_size, candidates.size()));
     for (std::size_t k = 0; k < part.size(); ++k) vertices[k] = vertices_of(kind, part[k], a, b);
-    const float latest = latest_of(job).load(std::memory_order_relaxed);
+    const float latest = std::min(worker.traversal.until(), latest_of(job).load(std::memory_order_relaxed));
     fill(objects, std::span(vertices).first(part.size()), are_edges, latest, worker.block);
     const double kept = kept_distance(job, latest, worker.block, part.size());
     const float reach = round_up(distance + growth * latest + kept);
@@ -245,8 +245,8 @@ void ImpactPass::decide_open_pairs(std::uint32_t job, ElementPairKind kind, std:
     const OpenPair& pair = worker.open[k];
     const ImpactSearch found = search_of(k);
     if (found.outcome == ImpactSearch::Outcome::apart) continue;
-    if (search_ >= Search::longest && found.time == 0 && touch_at_start(pair.motion)) {
-      if (search_ == Search::longest && !touch_at_rest(pair.motion)) add_near(job, kind, pair, true, worker);
+    if (search_ == Search::longest && found.time == 0 && touch_at_start(pair.motion)) {
+      if (!touch_at_rest(pair.motion)) add_near(job, kind, pair, true, worker);
       continue;
     }
     bool used_exact = false;

@@ -138,18 +138,17 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   using Earliest = ImpactWorker::Earliest;
   using StepLimit = ImpactWorker::StepLimit;
   using NearPair = ImpactWorker::NearPair;
-  /// `longest`: the earliest contact of elements that do not part. `touching`: the same without any
-  /// separation. `safe_step`: the parts of the step that keep distances. `free`: pairs that may not keep them
-  /// when both objects move by any parts until the time. From `longest` on, elements that touch at the start
-  /// do not count.
-  enum class Search : std::uint8_t { all, earliest, longest, touching, safe_step, free };
+  /// `longest`: the earliest contact of elements that do not part. `safe_step`: the parts of the step that
+  /// keep distances. `free`: pairs that may not keep them when both objects move by any parts until the time.
+  /// From `longest` on, elements that touch at the start do not count.
+  enum class Search : std::uint8_t { all, earliest, longest, safe_step, free };
 
   /// Plans and runs the tasks of `jobs`, which are indices into `jobs_`, each until the time that `latest_`
   /// has for it.
   void search(Search search, std::span<const std::uint32_t> jobs, const Parallel& parallel);
   /// The same for all jobs until a time in the step.
   void search_until(Search search, float until, const Parallel& parallel);
-  /// The earliest of `search`, one of `earliest`, `longest` and `touching`.
+  /// The earliest of `search`, which is `earliest` or `longest`.
   const Earliest* search_earliest(Search search, float until, const Parallel& parallel);
   void start(const PassInput& input, std::span<const MovingObject> objects,
              const ImpactSearchOptions& options);
@@ -180,9 +179,7 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   static bool limits_before(const StepLimit& p, const StepLimit& q);
   void start_steps(const PassInput& input, std::span<const MovingObject> objects,
                    const ImpactSearchOptions& options, const std::optional<StepOptions>& step);
-  SafeStep find_step_until(double until, const FirstOfAll& first_of_all, const Parallel& parallel);
   SafeStep first_in(SafeStep own, const FirstOfAll& first_of_all) const;
-  double part_of_small_ways() const;
   void list_limits();
   void add_near(std::uint32_t job, ElementPairKind kind, const OpenPair& pair, bool touches, Worker& worker);
   /// Adds what the last search found to `near_`, in canonical order, and returns the indices there.
@@ -227,7 +224,6 @@ class ImpactPass : public Pass<ImpactPass, MovingObject, ImpactWorker, Continuou
   // of its island with a smaller index, or to itself; then it has the island's step.
   std::vector<StepLimit> limits_, all_limits_;
   std::vector<NearPair> near_;
-  bool is_wild_ = false;  ///< elements come nearer by more than their size
   std::vector<std::uint32_t> island_;
   std::vector<SafeStep> safe_;
   /// The search skips pairs that cannot touch before these times; and which of them is that of each job.

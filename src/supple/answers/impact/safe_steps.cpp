@@ -15,8 +15,8 @@
 // their ways that they keep their distances at any parts.
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <numeric>
 #include <tuple>
@@ -24,90 +24,37 @@
 
 #include "answers/impact/impact_pass.hpp"
 #include "contact/impact/first_impact.hpp"
-#include "contact/impact/impact_search.hpp"
 #include "contact/impact/safe_time.hpp"
-#include "core/float_rounding.hpp"
-#include "geometry/aabb.hpp"
 #include "geometry/vector.hpp"
 
 namespace supple {
-namespace {
-
-/// Elements come nearer by more than about twice their size in steps of which a smaller part is small.
-constexpr double wild_part = 0.5;
-constexpr double very_wild = 0x1p-6;  // a smaller part is searched first
-
-/// The size of an object at the start, without what is not finite.
-double size_of(const MovingObject& object) {
-  Aabb box;
-  for (int child = 0; child < node_width && !object.view.nodes.empty(); ++child) {
-    if (const Aabb part = child_box(object.view.moving.start[0], child); !part.empty()) extend(box, part);
-  }
-  if (box.empty()) return 0;
-  double size = 0;
-  for (int axis = 0; axis < 3; ++axis) size = std::max(size, double{box.max[axis]} - double{box.min[axis]});
-  return size;
-}
-
-}  // namespace
 
 SafeStep ImpactPass::find_safe_step(const PassInput& input, std::span<const MovingObject> objects,
                                     const ImpactSearchOptions& options,
                                     const std::optional<StepOptions>& step, const FirstOfAll& first_of_all) {
   start_steps(input, objects, options, step);
-  SafeStep known{0, {}, true};
-  const double small = part_of_small_ways();
-  // Processes would have to agree on the first part.
-  for (const double until : {first_of_all || small > very_wild ? 1 : small, 1.0}) {
-    is_wild_ = small < wild_part * until;
-    const SafeStep found = find_step_until(until, first_of_all, input.parallel);
-    if (found.stopped) break;
-    if (found.limit || until == 1) return found;
-    known.step = until;
-  }
-  return known;
-}
-
-/// The safe step of all objects, no longer than `until`. In a wild step, the first contact bounds it before
-/// distances are searched that need more than the separation.
-SafeStep ImpactPass::find_step_until(double until, const FirstOfAll& first_of_all, const Parallel& parallel) {
+  const Parallel& parallel = input.parallel;
   island_.assign(objects_.size(), 0);
   latest_of_job_.assign(jobs_.size(), 0);
   near_.clear();
   limits_.clear();
-  safe_.assign(1, {until, {}});
+  safe_.assign(1, {});
   const auto go_on = [&] {
     safe_[0] = first_in(safe_[0], first_of_all);
     return safe_[0].step > 0 && !safe_[0].stopped;
   };
-  if (!step_ || is_wild_) {
-    const Earliest* const earliest =
-        search_earliest(step_ ? Search::touching : Search::longest, round_up(until), parallel);
-    limit_near(list_near(), {}, parallel);
-    for (const StepLimit& limit : limits_) shorten(0, limit);
-    if (earliest != nullptr && earliest->contact.toi < safe_[0].step)
-      safe_[0] = {earliest->contact.toi, pair_of_contact(earliest->contact)};
+  std::optional<ContinuousContact> contact;
+  if (step_) {
+    search_until(Search::safe_step, 1, parallel);
+    list_limits();
+  } else if (const Earliest* const earliest = search_earliest(Search::longest, 1, parallel)) {
+    contact = earliest->contact;
   }
-  if (!go_on() || !step_) return safe_[0];
-  search_until(Search::safe_step, safe_[0].limit ? latest_true_time(safe_[0].step) : round_up(until),
-               parallel);
-  list_limits();
   limit_near(list_near(), {}, parallel);
   for (const StepLimit& limit : limits_) shorten(0, limit);
-  if (go_on()) prove_rounded_positions(first_of_all, parallel);
-  return safe_[0];
-}
-
-/// A part of the step in which elements come nearer by no more than about their size.
-double ImpactPass::part_of_small_ways() const {
-  double part = 1;
-  for (const std::uint32_t job : all_jobs_) {
-    const MovingObject &a = objects_[jobs_[job].a], &b = objects_[jobs_[job].b];
-    const double faces = static_cast<double>(std::max(a.triangle_ids.size(), b.triangle_ids.size()));
-    const double size = std::max(size_of(a), size_of(b)) / std::sqrt(faces), approach = largest_approach(job);
-    if (approach > 0 && size > 0) part = std::min(part, size / approach);
-  }
-  return std::max(part, double{least_part_of_step});
+  if (contact && contact->toi < safe_[0].step) safe_[0] = {contact->toi, pair_of_contact(*contact)};
+  if (go_on() && step_) prove_rounded_positions(first_of_all, parallel);
+  return safe_[0].stopped ? SafeStep{0, {}, true} : safe_[0];
 }
 
 /// What all processes found first, with what this one found.
@@ -121,11 +68,6 @@ std::vector<ObjectStep> ImpactPass::find_safe_steps(const PassInput& input,
                                                     const ImpactSearchOptions& options,
                                                     const StepOptions& step) {
   start_steps(input, objects, options, step);
-  const double small = part_of_small_ways();
-  is_wild_ = false;
-  const SafeStep known =
-      small > very_wild ? SafeStep{0, {}, true} : find_step_until(small, {}, input.parallel);
-  is_wild_ = small < wild_part;
   island_.resize(objects.size());
   std::iota(island_.begin(), island_.end(), 0u);
   if (const std::size_t count = std::max(objects.size(), jobs_.size()); latest_.size() < count)
@@ -149,13 +91,13 @@ std::vector<ObjectStep> ImpactPass::find_safe_steps(const PassInput& input,
   search_islands(between, input.parallel);
   prove_rounded_positions({}, input.parallel);
   if (stop_.stop_requested()) {
-    // All that move are one island, of the first of them, with the step that is known.
+    // All that move are one island, of the first of them.
     auto root = static_cast<std::uint32_t>(objects.size());
     safe_.assign(objects.size(), {1, {}, true});
     for (std::uint32_t object = 0; object < objects.size(); ++object) {
       const bool is_moving = objects[object].ways != nullptr && moves(object);
       if (is_moving) root = std::min(root, object);
-      if (is_moving) safe_[object].step = known.stopped ? 0 : known.step;
+      if (is_moving) safe_[object].step = 0;
       island_[object] = is_moving ? root : object;
     }
   }
@@ -171,13 +113,17 @@ void ImpactPass::start_steps(const PassInput& input, std::span<const MovingObjec
                              const ImpactSearchOptions& options, const std::optional<StepOptions>& step) {
   start(input, objects, options);
   step_ = step;
-  search_ = Search::touching;
+  search_ = Search::longest;
   options_.impact.max_time = 1;
   options_.impact.skip_parting = true;
   all_jobs_.clear();
   for (std::uint32_t job = 0; job < jobs_.size(); ++job) {
     if (moves(jobs_[job].a) || moves(jobs_[job].b)) all_jobs_.push_back(job);
   }
+  // Elements that come near fast do so early, which shortens the searches of others.
+  std::vector<double> approaches(jobs_.size());
+  for (const std::uint32_t job : all_jobs_) approaches[job] = largest_approach(job);
+  std::ranges::stable_sort(all_jobs_, std::greater<>(), [&](std::uint32_t job) { return approaches[job]; });
 }
 
 /// Finds the limits of jobs within islands, up to the steps of these islands, and shortens them.
@@ -187,7 +133,6 @@ void ImpactPass::search_islands(std::span<const std::uint32_t> jobs, const Paral
     latest_of_job_[job] = island_of(mover_of(job));
     latest_of(job) = latest_true_time(safe_[latest_of_job_[job]].step);
   }
-  if (is_wild_) search(Search::touching, jobs, parallel);
   search(Search::safe_step, jobs, parallel);
   list_limits();
   limit_near(list_near(), {}, parallel);

@@ -86,7 +86,7 @@ void StepSearch::prepare_step(const ImpactSearchOptions& options, const std::opt
     if (object == nullptr) continue;
     MovingObject& listed = objects_[slot];
     listed.ways = &ways_[slot];
-    if (!step || !object->placement().has_motion()) continue;
+    if (!object->placement().has_motion()) continue;
     set_way_boxes(object->octree(), object->moving().elements(), *listed.start, *listed.end,
                   ways_of_nodes_[slot]);
     listed.view.ways = ways_of_nodes_[slot].data();
