@@ -197,13 +197,12 @@ class BottomUpSplitter {
 
 /// Sorts again where triangles have the same code although their centres differ, so that a vertex far away
 /// does not cost the others their order.
-void sort_finely(std::span<CurvePlace> places, std::span<const Vec3d> centers,
-                 std::vector<CurvePlace>& memory) {
-  sort_along_curve(places, centers, memory);
+void sort_finely(std::span<CurvePlace> places, std::span<const Vec3d> at, std::vector<CurvePlace>& memory) {
+  sort_along_curve(places, at, memory);
   if (places.empty() || places.front().code == places.back().code) return;
   for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
     while (end < places.size() && places[end].code == places[begin].code) ++end;
-    if (end - begin > reach) sort_finely(places.subspan(begin, end - begin), centers, memory);
+    if (end - begin > reach) sort_finely(places.subspan(begin, end - begin), at, memory);
   }
 }
 
