@@ -123,7 +123,8 @@ void ImpactPass::start_steps(const PassInput& input, std::span<const MovingObjec
   // Elements that come near fast do so early, which shortens the searches of others.
   std::vector<double> approaches(jobs_.size());
   for (const std::uint32_t job : all_jobs_) approaches[job] = largest_approach(job);
-  std::ranges::stable_sort(all_jobs_, std::greater<>(), [&](std::uint32_t job) { return approaches[job]; });
+  const auto place = [&](std::uint32_t job) { return std::pair(approaches[job], ~job); };
+  std::ranges::sort(all_jobs_, std::greater<>(), place);
 }
 
 /// Finds the limits of jobs within islands, up to the steps of these islands, and shortens them.

@@ -36,7 +36,7 @@ enum class FeatureCode : std::uint8_t { interiors = 0, crosses = 0, apart = 254,
 void classify(const PointsBlock& block, std::size_t count, bool are_edges, double max_distance,
               FeatureCode* codes);
 ClosestFeatures features_of_code(FeatureCode code, bool are_edges);
-/// The ends of both features; those of a vertex are equal, those of a face say nothing.
+/// The ends of both features; those of a vertex are equal, and those of a face a vertex of it.
 std::array<std::uint8_t, 4> ends_of_code(FeatureCode code, bool are_edges);
 
 /// What `edge_crosses_face` says about `count` pairs of an edge and a face: `apart`, `crosses`, or `unknown`

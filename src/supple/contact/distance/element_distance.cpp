@@ -231,7 +231,7 @@ std::array<std::uint8_t, 4> ends_of_code(FeatureCode code, bool are_edges) {
                                                              {1, 1, 2, 2}, {1, 1, 3, 3}, {0, 0, 2, 3},
                                                              {1, 1, 2, 3}, {0, 1, 2, 2}, {0, 1, 3, 3}};
   static constexpr std::array<std::uint8_t, 4> of_face[] = {
-      {}, {0, 0, 1, 1}, {0, 0, 2, 2}, {0, 0, 3, 3}, {0, 0, 1, 2}, {0, 0, 1, 3}, {0, 0, 2, 3}};
+      {0, 0, 1, 1}, {0, 0, 1, 1}, {0, 0, 2, 2}, {0, 0, 3, 3}, {0, 0, 1, 2}, {0, 0, 1, 3}, {0, 0, 2, 3}};
   return (are_edges ? of_edges : of_face)[static_cast<std::size_t>(code)];
 }
 
