@@ -30,8 +30,8 @@ struct SafeStep {
   /// The pair that ends it; of several at the same time the first in canonical order. Nothing for the whole
   /// step.
   std::optional<LimitingPair> limit;
-  /// The call ended before its search, by `StepLimits`. `step` is then a safe part that was found so far,
-  /// often 0; there may be a larger one.
+  /// `StepLimits` ended the call before its search was complete. `step` is then 0, although there may be a
+  /// larger one.
   bool stopped = false;
 
   constexpr bool operator==(const SafeStep&) const = default;

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 class SafeStep(NamedTuple):
     """The safe part of a step, 0 to 1, and the pair that ends it; None for the whole step.
 
-    `stopped`: the call ended before its search, by `stop` or `seconds`; the step is safe, and there may be a
-    larger one.
+    `stopped`: `stop` or `seconds` ended the call before its search was complete; the step is 0, although there
+    may be a larger one.
     """
 
     step: float

@@ -78,10 +78,9 @@ class ObjectQueries {
   /// Call before queries to another list of objects, or after they changed. After a request to stop, queries
   /// end early, and their results are of no use.
   void start(const StopSignal& stop = {});
-  /// The nearest triangle of a finite point; of several, the first by object and number. Computes
-  /// nothing that the decision does not need. Looks first at the
-  /// triangle that was nearest to the point before: for points that are close to each other, hardly any other
-  /// triangle is nearer.
+  /// The nearest triangle of a finite point; of several, the first by object and number. Computes nothing
+  /// that the decision does not need. Looks first at the triangle that was nearest to the point before: for
+  /// points that are close to each other, hardly any other triangle is nearer.
   std::optional<FoundTriangle> nearest(std::span<const QueriedObject> objects, const Vec3d& point,
                                        double max_distance);
   /// The same for at most `PointPacket::capacity` points, which are best close to each other.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t block_size = PointsBlock::capacity;
 constexpr std::size_t least_merge = 65536;  // candidates, 2 MB; fewer with a limit
-// Of a vertex and an edge or a point, as a face with equal corners.
+// The codes of a vertex and a point or an edge, which have the vertices of a face with equal corners.
 constexpr auto first_vertices = static_cast<FeatureCode>(1), first_edge = static_cast<FeatureCode>(4);
 
 template <std::size_t count>
