@@ -156,6 +156,11 @@ def judged(cells):
         values = judge.cells[cell]["values"]
         judge.add("safe step", cell, "Supple, detect", values["milliseconds"] / values["milliseconds of detect"], 0.5,
                   0.3, True)
+    for clock in ("build", "frame"):
+        points = [(cell["values"]["triangles"], cell["values"][f"milliseconds, {clock}"])
+                  for cell in map(judge.cells.get, judge.matching("scale/.*"))]
+        if len(points) > 1:
+            judge.add(f"growth of the {clock}, exponent", "one sphere with itself", "linear", exponent(points), 1.05, 1, True)
     for cell in judge.matching("build/.*"):
         values = judge.cells[cell]["values"]
         balanced = values["milliseconds, balanced"]

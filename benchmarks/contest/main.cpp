@@ -23,8 +23,8 @@ constexpr const char* usage =
     "Q/penetration/SHAPE[-deep]  Q/distance/SHAPE-apart  Q/distance/SHAPE-near\n"
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
     "limits/refit/TRIANGLES  "
-    "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  frames/SHAPExCOPIES  frames/surgery  first/SHAPExCOPIES "
-    " first/CLOTH\n"
+    "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  scale/TRIANGLES  frames/SHAPExCOPIES  "
+    "frames/surgery  first/SHAPExCOPIES  first/CLOTH\n"
     "      game/penetration  game/proximity\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
     "crumpled passing rods\n"
@@ -73,6 +73,8 @@ void run(const Choice& choice) {
     run_memory(after("memory/"), false, output);
   } else if (cell.starts_with("build/")) {
     run_build(choice, after("build/"), output);
+  } else if (cell.starts_with("scale/")) {
+    run_scale(choice, after("scale/"), output);
   } else if (cell.starts_with("first/")) {
     run_first_frame(choice, after("first/"), output);
   } else if (cell.starts_with("game/")) {

@@ -35,6 +35,9 @@ void run_refit(const Choice& choice, const std::string& cell, Output& output);
 void run_memory(const std::string& cell, bool moving, Output& output);
 /// SHAPE: the time to add an object with a balanced octree, with a regular octree, and on two threads.
 void run_build(const Choice& choice, const std::string& cell, Output& output);
+/// TRIANGLES: builds the octree of one sphere, refits it and searches it for self-collision, on one thread;
+/// the build and the refit of Embree.
+void run_scale(const Choice& choice, const std::string& triangles, Output& output);
 /// The first frame in a new process, with Supple and with Embree: CLOTH is read from its files, added and
 /// searched; the meshes of SHAPExCOPIES are there, and are added and searched.
 void run_first_frame(const Choice& choice, const std::string& cell, Output& output);

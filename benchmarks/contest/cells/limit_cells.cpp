@@ -136,6 +136,45 @@ void run_build(const Choice& choice, const std::string& shape, Output& output) {
   output.value("milliseconds, balanced, 2 threads", quantile(on_two_threads, 0.5));
 }
 
+void run_scale(const Choice& choice, const std::string& triangles, Output& output) {
+  auto sphere = make_deforming_copies(triangles + "x1");
+  const auto count = static_cast<double>(sphere->triangle_count());
+  output.value("triangles", count);
+  const auto time = [&](const std::string& name, const auto& work) {
+    const double start = cpu_milliseconds();
+    work();
+    output.value("milliseconds, " + name, cpu_milliseconds() - start);
+  };
+  {
+    const double before = heap_bytes();
+    SceneOptions options;
+    options.threads = 1;
+    Scene scene(options);
+    ObjectId object;
+    time("build",
+         [&] { object = scene.add(sphere->positions(0), sphere->triangles(), {.self_collision = true}); });
+    const auto frame = [&] {
+      sphere->advance();
+      scene.share_positions(object, sphere->positions(0));
+    };
+    for (const char* const name : {"first frame", "second frame", "third frame", "frame"}) {
+      frame();
+      time(name, [&] { scene.detect(); });
+    }
+    output.value("milliseconds, refit", 1e3 * scene.result().stats.refit_seconds);
+    output.value("heap bytes a triangle", (heap_bytes() - before) / count);
+  }
+  for (const auto& entry : other_copies_contestants()) {
+    if (entry.name != "Embree" || choice.only_supple) continue;
+    const auto embree = entry.make();
+    time("Embree, build", [&] { embree->prepare(*sphere); });
+    sphere->advance();
+    embree->frame(*sphere);
+    sphere->advance();
+    time("Embree, refit", [&] { embree->frame(*sphere); });
+  }
+}
+
 void run_frames(const Choice& choice, const std::string& name, Output& output) {
   auto copies = make_deforming_copies(name);
   if (!copies) return output.skip("the bunny is not there; set SUPPLE_DATA");
