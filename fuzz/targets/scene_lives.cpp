@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,7 @@ class Life {
   struct Object {
     ObjectId id;
     std::vector<Vec3d> positions;
+    std::set<std::uint32_t> removed{};
   };
 
   SceneOptions draw_options() {
@@ -177,7 +179,7 @@ class Life {
   void change() {
     Object& object = objects_[bytes_.byte() % objects_.size()];
     const ObjectId id = object.id;
-    switch (bytes_.below(14)) {
+    switch (bytes_.below(16)) {
       case 0:
       case 1: {
         object.positions = moved(object.positions);
@@ -264,10 +266,49 @@ class Life {
       case 12:
         query();
         return;
+      case 13:
+      case 14:
+        edit(object);
+        return;
       default:
         both([&](Scene& scene, std::size_t) { scene.remove(id); });
         std::erase_if(objects_, [&](const Object& o) { return o.id == id; });
     }
+  }
+
+  /// The triangles and vertices of an edit can be wrong; then nothing changes.
+  void edit(Object& object) {
+    std::vector<std::uint32_t> removed, points;
+    std::vector<Triangle> added;
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    std::vector<Vec3d> vertices, starts;
+    const auto triangles = static_cast<std::uint32_t>(scenes_[0].triangle_count(object.id));
+    for (std::uint32_t t = 0; t < triangles + (bytes_.below(16) == 0 ? 1 : 0); ++t) {
+      if (bytes_.below(3) == 0) removed.push_back(t);
+    }
+    for (std::uint32_t i = bytes_.below(3); i > 0; --i) vertices.push_back(coordinate_.point());
+    if (bytes_.below(2) == 0) starts = vertices;
+    const auto count = static_cast<std::uint32_t>(object.positions.size() + vertices.size());
+    const auto vertex = [&] { return bytes_.byte() % std::max(count, 1u); };
+    for (std::uint32_t i = bytes_.below(5); i > 0; --i) added.push_back({vertex(), vertex(), vertex()});
+    if (bytes_.below(8) == 0) points.push_back(vertex());
+    if (bytes_.below(8) == 0) edges.push_back({vertex(), vertex()});
+    const MeshEdit change{.removed = removed,
+                          .added = added,
+                          .new_vertices = vertices,
+                          .new_starts = starts,
+                          .added_edges = edges,
+                          .added_points = points};
+    if (both([&](Scene& scene, std::size_t) { scene.edit(object.id, change); })) {
+      object.positions.insert(object.positions.end(), vertices.begin(), vertices.end());
+      object.removed.insert(removed.begin(), removed.end());
+    } else {
+      check(scenes_[0].triangle_count(object.id) == triangles, "a refused edit adds triangles");
+      check(scenes_[0].vertex_count(object.id) == object.positions.size(), "a refused edit adds vertices");
+    }
+    if (bytes_.below(8) > 0) return;
+    both([&](Scene& scene, std::size_t) { scene.compact(object.id); });
+    object.removed.clear();
   }
 
   void detect() {
@@ -302,11 +343,13 @@ class Life {
   void explain(const DetectResult& result) {
     if (objects_.empty()) return;
     const Scene& scene = scenes_[0];
-    const ObjectId a = objects_[bytes_.byte() % objects_.size()].id,
-                   b = objects_[bytes_.byte() % objects_.size()].id;
+    const Object &object_a = objects_[bytes_.byte() % objects_.size()],
+                 &object_b = objects_[bytes_.byte() % objects_.size()];
+    const ObjectId a = object_a.id, b = object_b.id;
     if (scene.triangle_count(a) == 0 || scene.triangle_count(b) == 0) return;
     const auto of_a = static_cast<std::uint32_t>(bytes_.byte() % scene.triangle_count(a));
     const auto of_b = static_cast<std::uint32_t>(bytes_.byte() % scene.triangle_count(b));
+    if (object_a.removed.contains(of_a) || object_b.removed.contains(of_b)) return;
     const bool listed = std::any_of(result.contacts.begin(), result.contacts.end(), [&](const Contact& c) {
       const bool same_order =
           c.object_a == a && c.triangle_a == of_a && c.object_b == b && c.triangle_b == of_b;

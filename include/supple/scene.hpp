@@ -47,6 +47,21 @@ struct RigidTransform {
   static RigidTransform from_quaternion(double x, double y, double z, double w, Vec3d translation = {});
 };
 
+/// What changes in the mesh of an object: see `Scene::edit`. All lists may be empty.
+struct MeshEdit {
+  std::span<const std::uint32_t> removed{};  ///< triangles; their ids stay unused
+  /// Triangles; their ids are `triangle_count` and those after it. They may use new vertices.
+  TrianglesView added{};
+  /// Vertices; their ids are `vertex_count` and those after it. The positions are before the transform and
+  /// the translation of the object, and have the precision of its positions. Finite.
+  PositionsView new_vertices{};
+  /// Of an object on a path: where the new vertices start. `new_vertices` are where they end.
+  PositionsView new_starts{};
+  /// Edges and points of no triangle, as `ObjectOptions::edges` and `points`, by their vertices.
+  std::span<const std::array<std::uint32_t, 2>> removed_edges{}, added_edges{};
+  std::span<const std::uint32_t> removed_points{}, added_points{};
+};
+
 /// Deforming objects and all contacts between them.
 ///
 /// ```cpp
@@ -92,6 +107,25 @@ class Scene {
   /// Removes an object. Its pairs end at the next `detect`.
   void remove(ObjectId object);
 
+  /// Changes the mesh of an object: removes and adds triangles, and adds vertices. Its id, options, events,
+  /// manifolds, groups and user data stay; new vertices are in all groups. O(k log m) for k triangles and
+  /// vertices and m of edits since the last search. The next search builds the parts of the octree around
+  /// them again, O(k log n) and a copy of its arrays; with edges and points of no triangle, and with methods
+  /// of comparison, it builds the whole octree.
+  ///
+  /// All answers are those of a scene to which the edited mesh was added, with the same ids. A pair of
+  /// objects that touches before and after an edit stays. On a path, a new triangle moves as its vertices do,
+  /// as if it had been there at the start. A solid is judged at once: while its surface is open, its option
+  /// `solid` is false, so that nothing penetrates it, and `inside` throws as for each open surface. New
+  /// vertices are not welded; triangles may name welded ones.
+  ///
+  /// Throws `Error`, and changes nothing, when there is no such triangle, vertex, edge or point, when one is
+  /// removed twice, when a position is not finite or of the other precision, when the number of starts is not
+  /// that of the new vertices on a path and 0 at rest, and when the object is static or shares its positions.
+  void edit(ObjectId object, const MeshEdit& edit);
+  /// Renumbers the triangles that are left after edits from 0, in their order, and frees memory. Returns the
+  /// new number of each id, or 2^32 - 1 for those that were removed. Vertices keep their numbers. O(n log n).
+  std::vector<std::uint32_t> compact(ObjectId object);
   /// Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Replaces earlier
   /// transforms, translations and paths. Throws `Error` when the number of positions differs from the mesh.
   /// The bounds are the lowest and the highest coordinates of the positions. With them and
@@ -284,7 +318,7 @@ class Scene {
   /// The options of an object, with its name in messages and results and all changes since it was added.
   const ObjectOptions& options(ObjectId object) const;
   std::size_t vertex_count(ObjectId object) const;    ///< of its mesh
-  std::size_t triangle_count(ObjectId object) const;  ///< of its mesh
+  std::size_t triangle_count(ObjectId object) const;  ///< of its mesh, with those that edits removed
   /// The position that the exact tests use: with transforms and translations. Throws `Error` when there is no
   /// such vertex.
   Vec3d position(ObjectId object, std::uint32_t vertex) const;

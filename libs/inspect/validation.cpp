@@ -25,7 +25,11 @@ class Validation {
       : octree_(octree), vertices_(vertices), inert_(inert) {}
 
   std::string run() const {
-    if (!is_permutation(octree_.triangle_ids())) return "triangle ids are not a permutation";
+    for (std::uint32_t t = 0; t < octree_.triangles().size(); ++t) {
+      const std::uint32_t id = octree_.triangle_ids()[t];
+      if (!octree_.has_triangle(id) || octree_.octree_triangle(id) != t)
+        return "triangle ids and places do not match";
+    }
     const auto nodes = octree_.nodes();
     if (nodes.empty()) return octree_.triangles().empty() ? "" : "triangles without a node";
     std::vector<std::uint8_t> reached(nodes.size(), 0);
@@ -39,12 +43,6 @@ class Validation {
   }
 
  private:
-  static bool is_permutation(std::span<const std::uint32_t> ids) {
-    std::vector<std::uint8_t> seen(ids.size(), 0);
-    return std::all_of(ids.begin(), ids.end(),
-                       [&](std::uint32_t id) { return id < ids.size() && seen[id]++ == 0; });
-  }
-
   std::string check_node(std::uint32_t n, std::vector<std::uint8_t>& reached, std::uint32_t& covered) const {
     const OctreeNode& node = octree_.nodes()[n];
     const std::string here = "node " + std::to_string(n) + ": ";

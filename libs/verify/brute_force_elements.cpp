@@ -1,5 +1,8 @@
 #include "verify/brute_force_elements.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "core/sort_once.hpp"
 #include "geometry/vector.hpp"
 #include "world/object/world_object.hpp"
@@ -25,12 +28,19 @@ PlainObject plain_object(const WorldObject& object, bool at_rest) {
   PlainObject plain{.groups = object.vertex_groups(),
                     .face_count = object.face_count(),
                     .neighbours = object.options.neighbours};
-  for (std::uint32_t t = 0; t < octree.triangles().size(); ++t)
-    plain.triangles.push_back(octree.user_triangle(t));
+  const auto removed = static_cast<std::uint32_t>(octree.vertex_count());
+  for (std::uint32_t t = 0; t < octree.id_count(); ++t) {
+    plain.triangles.push_back(octree.has_triangle(t) ? octree.user_triangle(t)
+                                                     : Triangle{removed, removed, removed});
+  }
   for (std::uint32_t vertex = 0; vertex < octree.vertex_count(); ++vertex) {
     plain.end.push_back(object.placement().position(vertex));
     plain.start.push_back(at_rest ? plain.end.back() : object.placement().start_position(vertex));
   }
+  if (octree.triangles().size() == octree.id_count()) return plain;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  plain.removed_vertex = removed;
+  for (auto* const positions : {&plain.start, &plain.end}) positions->push_back({nan, nan, nan});
   return plain;
 }
 

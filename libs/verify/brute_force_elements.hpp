@@ -125,6 +125,8 @@ struct PlainObject {
   /// Triangles from here on are edges and points of no triangle, with the last vertex repeated.
   std::size_t face_count = triangles.size();
   Neighbours neighbours = Neighbours::skip;
+  /// Triangles that an edit removed have this vertex, which is not finite.
+  std::uint32_t removed_vertex = ~std::uint32_t{0};
 
   std::span<const Triangle> faces() const { return std::span(triangles).first(face_count); }
   /// The corners of a triangle at the end.

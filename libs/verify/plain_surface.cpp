@@ -159,6 +159,7 @@ Rational squared_distance_by_integers(const Vec3d& point, const TrianglePoints& 
 PlainSurface::PlainSurface(const PlainObject& object) {
   std::vector<QueryBox> boxes;
   for (std::uint32_t t = 0; t < object.face_count; ++t) {
+    if (object.triangles[t][0] == object.removed_vertex) continue;
     const TrianglePoints corners = object.corners(t);
     if (!std::ranges::all_of(corners, is_finite)) {
       has_inert = true;

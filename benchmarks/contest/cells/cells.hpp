@@ -46,6 +46,9 @@ void run_frames(const Choice& choice, const std::string& cell, Output& output);
 /// The distribution of the times of 5,000 frames (`Choice::rounds`, if given) of a tool on an organ, with
 /// penetration, and with penetration and curves. The time of a frame is the least of four runs.
 void run_surgery(const Choice& choice, Output& output);
+/// The times of edits of an organ that a blade cuts, of frames with them, and of frames that remove the organ
+/// and add it again; and of queries after all edits, of the edited octree and of a fresh one.
+void run_cutting(const Choice& choice, Output& output);
 /// A pile of crates and balls, with penetration or proximity: the median time of a frame with manifolds and
 /// without, of the manifolds alone, and of a plain loop that makes its own.
 void run_game(const Choice& choice, const std::string& cell, Output& output);

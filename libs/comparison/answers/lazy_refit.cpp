@@ -29,6 +29,7 @@ Aabb rounded(const QueryBox& bounds) {
 bool LazyRefit::refit_object(ObjectOctree& octree, const VertexBuffer& vertices,
                              const std::optional<Aabb>& box) {
   if (octree.nodes_.empty()) return true;
+  if (octree.is_current_.empty()) octree.list_unused_vertices();
   octree.is_current_.assign(octree.nodes_.size(), 0);
   QueryBox bounds = no_box();
   bool all_finite = true;

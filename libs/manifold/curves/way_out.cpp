@@ -28,8 +28,7 @@ void WayOut::start(const PenetratedObject& a, const PenetratedObject& b) {
     queries_[side].start();
     for (const std::uint32_t t : triangles_[side]) is_listed_[side][t] = 0;
     triangles_[side].clear();
-    is_listed_[side].resize(
-        std::max(is_listed_[side].size(), bodies_[side]->surface.octree->triangles().size()), 0);
+    is_listed_[side].resize(std::max(is_listed_[side].size(), bodies_[side]->surface.octree->id_count()), 0);
   }
 }
 

@@ -30,10 +30,11 @@ TestableObject testable_object(ContactKinds kind, ElementKinds elements, const W
   const auto is_usable = [&](std::uint32_t v) {
     return is_finite(placement.position(v)) && (!on_the_way || is_finite(placement.start_position(v)));
   };
-  const std::size_t count = has_parts ? object.octree().triangles().size() : object.face_count();
+  const std::size_t count = has_parts ? object.octree().id_count() : object.face_count();
   const int needed = tests_itself && kind != ContactKinds::penetration ? 2 : 1;
   int taking_part = 0;
   for (std::uint32_t e = 0; e < count && taking_part < needed; ++e) {
+    if (!object.octree().has_triangle(e)) continue;
     const Triangle& corners = object.octree().user_triangle(e);
     if (only_edges && corners[0] == corners[2]) continue;
     found.has_elements = true;

@@ -59,7 +59,8 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 
 ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                            const ObjectOctreeOptions& options, BoundingVolume bounding_volume,
-                           SphereFit sphere_fit, const Parallel& parallel)
+                           SphereFit sphere_fit, const Parallel& parallel, std::span<const std::uint32_t> ids,
+                           std::size_t id_count)
     : vertex_count_(rest_positions.size()),
       options_(options),
       bounding_volume_(bounding_volume),
@@ -72,25 +73,20 @@ ObjectOctree::ObjectOctree(const PositionsView& rest_positions, std::span<const 
   triangle_ids_ = std::move(topology.order);
   boxes_.resize(nodes_.size());
   triangles_.resize(triangles.size());
-  triangle_order_.resize(triangles.size());
+  triangle_order_.resize(std::max(triangles.size(), id_count), no_place);
   parallel.for_ranges(triangles.size(), triangles_of_a_task,
                       [&](std::size_t begin, std::size_t end, std::uint32_t) {
                         for (std::size_t t = begin; t < end; ++t) {
                           triangles_[t] = triangles[triangle_ids_[t]];
+                          if (!ids.empty()) triangle_ids_[t] = ids[triangle_ids_[t]];
                           triangle_order_[triangle_ids_[t]] = static_cast<std::uint32_t>(t);
                         }
                       });
   list_leaf_vertices(parallel);
   if (bounding_volume == BoundingVolume::aabb) return;
+  list_unused_vertices();
   volumes_ = comparison_methods(std::string("the bounding volume ") + word_of(bounding_volume))
                  .node_volumes(bounding_volume, sphere_fit, *this, rest_positions);
-}
-
-ObjectOctree ObjectOctree::rebuilt(const PositionsView& positions, const Parallel& parallel) const {
-  std::vector<Triangle> user_triangles;
-  user_triangles.reserve(triangles_.size());
-  for (const std::uint32_t t : triangle_order_) user_triangles.push_back(triangles_[t]);
-  return ObjectOctree(positions, user_triangles, options_, bounding_volume_, sphere_fit_, parallel);
 }
 
 void ObjectOctree::list_leaf_vertices(const Parallel& parallel) {
@@ -146,20 +142,22 @@ void ObjectOctree::list_leaf_vertices(const Parallel& parallel) {
     std::uint32_t* const end = std::copy_n(found, counts[leaf], &leaf_vertices_[first_leaf_vertex_[leaf]]);
     std::fill(end, leaf_vertices_.data() + first_leaf_vertex_[leaf + 1], found[counts[leaf] - 1]);
   });
-  for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) {
-    const auto is_used = [&](const std::vector<Place>& places) {
-      return !places.empty() && places[vertex].leaf != unnumbered;
-    };
-    if (std::ranges::none_of(last_places, is_used)) unused_vertices_.push_back(vertex);
+}
+
+void ObjectOctree::list_unused_vertices() {
+  std::vector<std::uint8_t> is_used(vertex_count_, 0);
+  for (const Triangle& triangle : triangles_) {
+    for (const std::uint32_t vertex : triangle) is_used[vertex] = 1;
   }
-  unused_vertices_.shrink_to_fit();
+  unused_vertices_.clear();
+  for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) {
+    if (is_used[vertex] == 0) unused_vertices_.push_back(vertex);
+  }
 }
 
 bool ObjectOctree::refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                          const Parallel& parallel) {
-  std::atomic<bool> all_finite =
-      !inert.empty() || std::all_of(unused_vertices_.begin(), unused_vertices_.end(),
-                                    [&](std::uint32_t vertex) { return is_finite(vertices[vertex]); });
+  std::atomic<bool> all_finite = true;
   const TriangleArrays arrays = arrays_of(triangles_, vertices, inert);
   for_nodes_bottom_up(parallel, 64, [&](std::uint32_t begin, std::uint32_t end) {
     if (!all_finite) return;

@@ -18,6 +18,8 @@
 
 namespace supple {
 
+constexpr std::uint32_t no_place = ~std::uint32_t{0};
+
 /// Raw arrays for the kernels; `inert` may be empty.
 TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer& vertices,
                          std::span<const std::uint8_t> inert);
@@ -38,10 +40,12 @@ TriangleArrays arrays_of(std::span<const Triangle> triangles, const VertexBuffer
 /// spheres 128 more per node (`SphereFit::medial`: 256), with oriented boxes 592, with k-DOPs 32 (k - 6).
 class ObjectOctree {
  public:
-  /// O(n log n). Triangles with a vertex that is not finite count as the lower corner of the others.
+  /// O(n log n). Triangles with a vertex that is not finite count as the lower corner of the others. `ids`
+  /// are the user's ids of the triangles, ascending and smaller than `id_count`; by default 0, 1 and so on.
   ObjectOctree(const PositionsView& rest_positions, std::span<const Triangle> triangles,
                const ObjectOctreeOptions& options, BoundingVolume bounding_volume, SphereFit sphere_fit,
-               const Parallel& parallel = Parallel(1));
+               const Parallel& parallel = Parallel(1), std::span<const std::uint32_t> ids = {},
+               std::size_t id_count = 0);
 
   std::span<const OctreeNode> nodes() const { return nodes_; }
   /// `OctreeTopology::numbers`.
@@ -62,6 +66,11 @@ class ObjectOctree {
   std::uint32_t octree_triangle(std::uint32_t user_triangle) const { return triangle_order_[user_triangle]; }
   const Triangle& user_triangle(std::uint32_t triangle) const {
     return triangles_[octree_triangle(triangle)];
+  }
+  /// The user's ids are smaller than this; those of removed triangles stay unused.
+  std::size_t id_count() const { return triangle_order_.size(); }
+  bool has_triangle(std::uint32_t user_triangle) const {
+    return user_triangle < triangle_order_.size() && triangle_order_[user_triangle] != no_place;
   }
   std::size_t vertex_count() const { return vertex_count_; }
 
@@ -94,8 +103,36 @@ class ObjectOctree {
   std::optional<std::size_t> refit_moved(const VertexBuffer& vertices, std::span<const std::uint32_t> moved,
                                          const Parallel& parallel);
 
+  /// Triangles with their ids, ascending.
+  struct Triangles {
+    std::vector<Triangle> triangles;
+    std::vector<std::uint32_t> ids;
+
+    void push(const Triangle& triangle, std::size_t id) {
+      triangles.push_back(triangle);
+      ids.push_back(static_cast<std::uint32_t>(id));
+    }
+  };
+  /// Those of the octree without some, ascending.
+  Triangles listed_triangles(std::span<const std::uint32_t> without = {}) const;
+  /// An octree with the same options of other triangles, whose ids are smaller than `id_count`.
+  ObjectOctree built_like_this(const PositionsView& positions, const Triangles& listed, std::size_t id_count,
+                               const Parallel& parallel) const {
+    return ObjectOctree(positions, listed.triangles, options_, bounding_volume_, sphere_fit_, parallel,
+                        listed.ids, id_count);
+  }
   /// The octree of the same triangles and options, built from other positions. O(n log n).
-  ObjectOctree rebuilt(const PositionsView& positions, const Parallel& parallel = Parallel(1)) const;
+  ObjectOctree rebuilt(const PositionsView& positions, const Parallel& parallel = Parallel(1)) const {
+    return built_like_this(positions, listed_triangles(), id_count(), parallel);
+  }
+
+  /// Removes triangles, by the user's ids, ascending, and adds some, whose ids follow `id_count`. Builds
+  /// again, from these positions, the smallest subtrees that hold them, but subtrees of a few times their
+  /// number; `is_local` is false for octrees that can only be built as a whole. The boxes are invalid until
+  /// the next `refit`. Takes all memory before it changes anything. O(k log n) for k triangles, and copies
+  /// of the arrays.
+  void edit(std::span<const std::uint32_t> removed, std::span<const Triangle> added,
+            const PositionsView& positions, bool is_local, const Parallel& parallel);
 
   /// Volumes of the whole object at the last refit; empty when it has no finite triangle.
   const Aabb& box() const { return box_; }
@@ -114,7 +151,16 @@ class ObjectOctree {
  private:
   friend struct LazyRefit;  // of the library supple::comparison
 
+  struct EditedSubtree;
+
   void list_leaf_vertices(const Parallel& parallel);
+  void list_unused_vertices();
+  std::vector<EditedSubtree> subtrees_to_edit(std::span<const std::uint32_t> removed,
+                                              std::span<const Triangle> added,
+                                              const PositionsView& positions) const;
+  std::uint32_t lowest_node_with(std::uint32_t triangle) const;
+  std::uint32_t lowest_node_near(const Vec3d& point) const;
+  void splice(std::span<const EditedSubtree> subtrees);
   void list_nodes_of_vertices();
   void mark_with_ancestors(std::uint32_t node);
   RefittedOctree refitted(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
@@ -131,7 +177,7 @@ class ObjectOctree {
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> triangle_ids_, triangle_order_;
   std::size_t vertex_count_;
-  // `LeafVertexArrays`, and the vertices that no triangle uses.
+  // `LeafVertexArrays`, and the vertices that no triangle uses, for methods of supple::comparison.
   std::vector<std::uint32_t> first_leaf_vertex_, leaf_vertices_, unused_vertices_;
   std::vector<std::uint8_t> leaf_corners_;
   // For `refit_moved`: the nodes with a leaf that contains vertex v are `nodes_of_vertices_[first_node_[v]]`

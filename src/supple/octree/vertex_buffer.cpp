@@ -53,14 +53,31 @@ void VertexBuffer::set(std::span<const std::uint32_t> ids, const PositionsView& 
                        const Parallel& parallel) {
   assert(ids.size() == positions.size() && (ids.empty() || positions.is_double() == is_double_));
   if (borrowed_ != nullptr) assign(view(), parallel);
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    if (is_double_) {
-      set_double(ids[i], positions.get<double>(i));
-    } else {
-      const Vec3f p = positions.get<float>(i);
-      std::copy_n(&p.x, 3, &floats_[3 * std::size_t{ids[i]}]);
-    }
-  }
+  for (std::size_t i = 0; i < ids.size(); ++i) set(ids[i], positions, i);
+}
+
+void VertexBuffer::set(std::size_t vertex, const PositionsView& positions, std::size_t i) {
+  if (is_double_) return set_double(vertex, positions.get<double>(i));
+  const Vec3f p = positions.get<float>(i);
+  std::copy_n(&p.x, 3, &floats_[3 * vertex]);
+}
+
+void VertexBuffer::reserve_more(std::size_t count) {
+  const auto reserve_in = [&](auto& coordinates) {
+    const std::size_t needed = 3 * (count_ + count) + 1;
+    if (needed > coordinates.capacity()) coordinates.reserve(needed + needed / 4);
+  };
+  if (is_double_) reserve_in(doubles_);
+  if (!is_double_) reserve_in(floats_);
+}
+
+void VertexBuffer::append(const PositionsView& positions) {
+  assert(borrowed_ == nullptr && positions.is_double() == is_double_);
+  const std::size_t first = count_;
+  count_ += positions.size();
+  if (is_double_) doubles_.resize(3 * count_ + 1);
+  if (!is_double_) floats_.resize(3 * count_ + 1);
+  for (std::size_t i = 0; i < positions.size(); ++i) set(first + i, positions, i);
 }
 
 void VertexBuffer::gather(const VertexBuffer& source, std::span<const std::uint32_t> ids,

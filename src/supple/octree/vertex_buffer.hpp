@@ -45,6 +45,12 @@ class VertexBuffer {
   /// copied first.
   void set(std::span<const std::uint32_t> ids, const PositionsView& positions, const Parallel& parallel);
 
+  /// Takes memory, so that `append` of this many positions cannot fail.
+  void reserve_more(std::size_t count);
+  /// Adds vertices, in the precision of the buffer, which is not borrowed.
+  void append(const PositionsView& positions);
+  bool is_borrowed() const { return borrowed_ != nullptr; }
+
   /// Vertex v becomes vertex `ids[v]` of `source`, in the precision of `source`.
   void gather(const VertexBuffer& source, std::span<const std::uint32_t> ids, const Parallel& parallel);
 
@@ -66,6 +72,7 @@ class VertexBuffer {
 
  private:
   void resize(std::size_t count, bool is_double);
+  void set(std::size_t vertex, const PositionsView& positions, std::size_t i);
   template <class Scalar>
   void copy(const PositionsView& positions, const Parallel& parallel);
   void set_double(std::size_t vertex, const Vec3d& p) {

@@ -12,8 +12,9 @@ TriangleMesh surface_of(const WorldObject& object) {
   TriangleMesh mesh;
   for (std::uint32_t v = 0; v < object.octree().vertex_count(); ++v)
     mesh.positions.push_back(object.placement().position(v));
-  for (std::uint32_t t = 0; t < object.face_count(); ++t)
-    mesh.triangles.push_back(object.octree().user_triangle(t));
+  for (std::uint32_t t = 0; t < object.face_count(); ++t) {
+    if (object.octree().has_triangle(t)) mesh.triangles.push_back(object.octree().user_triangle(t));
+  }
   return mesh;
 }
 

@@ -50,6 +50,12 @@ void Scene::set_positions(ObjectId object, PositionsView positions,
 void Scene::set_vertices(ObjectId object, std::span<const std::uint32_t> vertices, PositionsView positions) {
   implementation_->world.set_vertices(object, vertices, positions);
 }
+void Scene::edit(ObjectId object, const MeshEdit& edit) {
+  implementation_->world.edit(object, edit);
+}
+std::vector<std::uint32_t> Scene::compact(ObjectId object) {
+  return implementation_->world.compact(object);
+}
 void Scene::share_positions(ObjectId object, PositionsView positions) {
   implementation_->world.share_positions(object, positions);
 }
@@ -133,11 +139,11 @@ const ObjectOptions& Scene::options(ObjectId object) const {
 }
 
 std::size_t Scene::vertex_count(ObjectId object) const {
-  return implementation_->world.object(object, "vertex_count").octree().vertex_count();
+  return implementation_->world.object(object, "vertex_count").vertex_count();
 }
 
 std::size_t Scene::triangle_count(ObjectId object) const {
-  return implementation_->world.object(object, "triangle_count").face_count();
+  return implementation_->world.object(object, "triangle_count").triangle_count();
 }
 
 Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
@@ -158,6 +164,10 @@ ElementVertices vertices_of(const Scene& scene, ObjectId id, FeatureKind kind,
   if (kind == FeatureKind::edge) return {{element[0], element[1]}, 2};
   const WorldObject& found = SceneAccess::of(scene).world.object(id, "vertices_of");
   check_triangle(found, element[0], "vertices_of");
+  if (!found.octree().has_triangle(element[0])) {
+    fail("vertices_of: " + found.options.name + " has no triangle " + std::to_string(element[0]) +
+         "; an edit removed it, or no call has searched the edited mesh yet");
+  }
   return {found.octree().user_triangle(element[0]), 3};
 }
 

@@ -48,15 +48,11 @@ ObjectId World::add(const PositionsView& positions, const TrianglesView& triangl
   std::vector<Triangle> faces = checked_triangles(named.name, positions.size(), triangles, parallel);
   std::vector<Triangle> extra = checked_extra_elements(positions.size(), named);
   if (faces.size() + extra.size() >= 0xffffffff) fail(named.name + ": more than 2^32 - 2 elements");
-  if (const auto same = checked_same_vertices(positions, named); !same.empty()) {
-    for (auto* const elements : {&faces, &extra}) {
-      for (Triangle& triangle : *elements) {
-        for (std::uint32_t& vertex : triangle) vertex = same[vertex];
-      }
-    }
-    // Welded ends make an edge a point.
-    for (Triangle& edge : extra) std::sort(edge.begin(), edge.begin() + 2);
-    for (Triangle& edge : extra) edge[2] = edge[1];
+  std::vector<std::uint32_t> same = checked_same_vertices(positions, named);
+  if (!same.empty()) {
+    const auto same_vertex = [&](std::uint32_t vertex) { return same[vertex]; };
+    merge_welded(faces, same_vertex);
+    merge_welded_elements(extra, same_vertex);
   }
   sort_once(extra);
   if (named.solid) {
@@ -66,6 +62,7 @@ ObjectId World::add(const PositionsView& positions, const TrianglesView& triangl
       fail(named.name + " is no solid: " + fault);
   }
   auto object = std::make_unique<WorldObject>(positions, std::move(faces), extra, named, options, parallel);
+  object->keep_welded(std::move(same));
   object->move().set_positions(positions, parallel);
   object->measure_built_octree(parallel);
   object->inward_triangles();  // the rest pose decides which sheets bound holes

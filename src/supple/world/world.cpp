@@ -33,7 +33,7 @@ SceneOptions checked(SceneOptions options) {
 }
 
 void check_count(const WorldObject& object, std::size_t count, const char* call) {
-  const std::size_t vertices = object.octree().vertex_count();
+  const std::size_t vertices = object.vertex_count();
   if (count == vertices) return;
   fail(std::string(call) + ": " + std::to_string(count) + " positions for " + object.options.name +
        ", which has " + std::to_string(vertices) + " vertices; give one for each vertex");
@@ -42,15 +42,18 @@ void check_count(const WorldObject& object, std::size_t count, const char* call)
 }  // namespace
 
 void check_vertex(const WorldObject& object, std::uint32_t vertex, const char* call) {
-  const std::size_t count = object.octree().vertex_count();
+  const std::size_t count = object.vertex_count();
   if (vertex < count) return;
   fail(std::string(call) + ": " + object.options.name + " has no vertex " + std::to_string(vertex) +
        "; it has " + std::to_string(count) + ", numbered from 0");
 }
 
 void check_triangle(const WorldObject& object, std::uint32_t triangle, const char* call) {
-  const std::size_t count = object.face_count();
-  if (triangle < count) return;
+  const std::size_t count = object.triangle_count();
+  if (object.has_triangle(triangle)) return;
+  if (triangle < count)
+    fail(std::string(call) + ": triangle " + std::to_string(triangle) + " of " + object.options.name +
+         " was removed by an edit");
   fail(std::string(call) + ": " + object.options.name + " has no triangle " + std::to_string(triangle) +
        "; it has " + std::to_string(count) + ", numbered from 0");
 }
@@ -214,7 +217,7 @@ void World::set_options(ObjectId id, const ObjectChanges& changes) {
 void World::set_vertex_groups(ObjectId id, std::span<const std::uint32_t> groups,
                               std::span<const std::uint32_t> masks) {
   WorldObject& found = object(id, "set_vertex_groups");
-  const std::size_t count = found.octree().vertex_count();
+  const std::size_t count = found.vertex_count();
   for (const std::size_t given : {groups.size(), masks.size()}) {
     if (given == count || (groups.empty() && masks.empty())) continue;
     fail("set_vertex_groups: " + std::to_string(given) + " numbers for " + found.options.name +

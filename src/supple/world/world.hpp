@@ -59,6 +59,8 @@ class World {
                      const std::optional<std::array<Vec3d, 2>>& bounds = {});
   void set_vertices(ObjectId id, std::span<const std::uint32_t> vertices, const PositionsView& positions);
   void share_positions(ObjectId id, const PositionsView& positions);
+  void edit(ObjectId id, const MeshEdit& edit);
+  std::vector<std::uint32_t> compact(ObjectId id);
   void translate(ObjectId id, const Vec3d& offset);
   void set_transform(ObjectId id, const RigidTransform& transform);
   void set_motion(ObjectId id, const PositionsView& from, const PositionsView& to);

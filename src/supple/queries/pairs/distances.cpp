@@ -50,7 +50,9 @@ void Queries::prepare(NearObjects& near) const {
     a.update_fine_boxes();
     b.update_fine_boxes();
   }
-  if (const auto known = nearest_triangles_.find(near.pair); known != nearest_triangles_.end()) {
+  if (const auto known = nearest_triangles_.find(near.pair); known != nearest_triangles_.end() &&
+                                                             a.octree().has_triangle(known->second.a) &&
+                                                             b.octree().has_triangle(known->second.b)) {
     const auto is_inert = [](const WorldObject& object, std::uint32_t triangle) {
       const std::uint8_t* const inert = object.resting_view().arrays.inert;
       return inert != nullptr && inert[triangle] != 0;

@@ -24,10 +24,11 @@ class AdaptiveCulling {
   }
   std::size_t bytes() const { return culling_.bytes(); }
 
-  /// Call after the octree was rebuilt.
+  /// Call after the octree was rebuilt or edited. An object that is edited in each step is never culled.
   void forget_octree() {
     culling_ = {};
     version_ = culled_version_ = 0;
+    if (steps_to_pause_ == 0) steps_to_pause_ = 1;
   }
 
  private:

@@ -44,7 +44,7 @@ class MovingShape {
   std::span<const std::uint32_t> non_finite_vertices() const { return non_finite_; }
   std::size_t bytes() const;
 
-  /// Call after the octree was rebuilt.
+  /// Call after the octree was rebuilt or edited.
   void forget_octree() {
     version_ = 0;
     elements_ = {};

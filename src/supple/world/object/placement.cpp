@@ -64,6 +64,19 @@ void Placement::set_vertices(std::span<const std::uint32_t> vertices, const Posi
   if (vertices.size() > end_.size() / 8) ++shape_version_;
 }
 
+void Placement::append(const PositionsView& positions, const PositionsView& start, const Parallel& parallel) {
+  std::vector<Vec3d> transformed;
+  for (std::size_t i = 0; has_shape_ && i < positions.size(); ++i)
+    transformed.push_back(rotated(positions[i]));
+  for (VertexBuffer* const buffer : {&end_, &start_, &shape_}) buffer->reserve_more(positions.size());
+  if (is_baked_) restore(parallel);
+  if (has_shape_) shape_.append(positions);
+  end_.append(has_shape_ ? PositionsView(transformed) : positions);
+  if (has_motion_) start_.append(start);
+  ++shape_version_;
+  change_all();
+}
+
 void Placement::translate(Vec3d offset, const Parallel& parallel) {
   restore(parallel);
   translation_ = translation_ + offset;

@@ -28,6 +28,8 @@ class Placement {
   /// Sets some of the positions p. The object comes to rest; its transform and translation stay.
   void set_vertices(std::span<const std::uint32_t> vertices, const PositionsView& positions,
                     const Parallel& parallel);
+  /// Adds vertices with these positions p, and on a path with these starts. The positions are not borrowed.
+  void append(const PositionsView& positions, const PositionsView& start, const Parallel& parallel);
   void translate(Vec3d offset, const Parallel& parallel);
   void set_transform(const RigidTransform& transform, const Parallel& parallel);
   /// The sign of the determinant of the matrix, which is finite. Exact.

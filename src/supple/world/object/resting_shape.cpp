@@ -29,7 +29,7 @@ std::size_t RestingShape::update(ObjectOctree& octree, Placement& placement, con
 
 std::size_t RestingShape::update_object(ObjectOctree& octree, Placement& placement,
                                         const std::optional<Aabb>& box, const Parallel& parallel) {
-  if (octree.triangles().size() != face_count_) return update(octree, placement, parallel);
+  if (octree.id_count() != face_count_) return update(octree, placement, parallel);
   while (!has_object(placement)) {
     version_ = 0;
     if (!comparison_methods({}).refit_object(octree, placement.end(), box))
@@ -68,7 +68,7 @@ void RestingShape::refit_all(ObjectOctree& octree, const Placement& placement, c
   non_finite_.clear();
   has_inert_faces_ = false;
   const bool are_finite = octree.refit(placement.end(), {}, parallel);
-  if (are_finite && octree.triangles().size() == face_count_) return;
+  if (are_finite && octree.id_count() == face_count_) return;
   has_inert_faces_ = mark_inert(octree, placement.end(), face_count_, inert_);
   const auto is_finite_at = [&](std::uint32_t v) { return is_finite(placement.position(v)); };
   if (!are_finite) list_non_finite(octree, is_finite_at, non_finite_);

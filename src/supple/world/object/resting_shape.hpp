@@ -48,8 +48,9 @@ class RestingShape {
   bool has_inert_faces() const { return has_inert_faces_; }
   std::size_t bytes() const { return inert_.capacity() + culling_.bytes(); }
 
-  /// Call after the octree was rebuilt.
-  void forget_octree() {
+  /// Call after the octree was rebuilt or edited.
+  void forget_octree(std::uint32_t face_count) {
+    face_count_ = face_count;
     version_ = object_version_ = 0;
     culling_.forget_octree();
   }

@@ -54,6 +54,9 @@ WorldObject::WorldObject(const PositionsView& positions, std::vector<Triangle> f
                          const SceneOptions& scene_options, const Parallel& parallel)
     : options(object_options),
       face_count_(static_cast<std::uint32_t>(faces.size())),
+      is_edited_locally_(object_options.octree.build == ObjectOctreeBuild::balanced &&
+                         scene_options.bounding_volume == BoundingVolume::aabb &&
+                         !scene_options.comparison.lazy_refit),
       descent_(scene_options.comparison.descent),
       octree_(positions, with_extra(std::move(faces), extra), octree_options(object_options, scene_options),
               scene_options.bounding_volume, scene_options.comparison.sphere_fit, parallel),
@@ -66,9 +69,14 @@ WorldObject::WorldObject(const PositionsView& positions, std::vector<Triangle> f
   options.edges = {};
   options.points = {};
   options.same_vertex = {};
+  list_points(extra);
+}
+
+void WorldObject::list_points(std::span<const Triangle> extra) {
+  is_point_.clear();
   for (const auto& [v, w, last] : extra) {
     if (v != w) continue;
-    is_point_.resize(positions.size(), 0);
+    is_point_.resize(std::max(octree_.vertex_count(), is_point_.size()), 0);
     is_point_[v] = 1;
   }
 }
@@ -118,7 +126,7 @@ bool WorldObject::is_stale(const SearchedShapes& shapes) const {
 bool WorldObject::needs_refit(const SearchedShapes& shapes) const {
   const bool has_resting =
       is_lazy(shapes) ? resting_.has_object(placement_) : resting_.is_current(placement_);
-  return (shapes.resting && !has_resting) || (shapes.moving && !moving_.is_current(placement_)) ||
+  return pending_ || (shapes.resting && !has_resting) || (shapes.moving && !moving_.is_current(placement_)) ||
          (of_this(shapes).near && !near().is_current(placement_));
 }
 
@@ -130,6 +138,7 @@ SearchedShapes WorldObject::with_current(SearchedShapes shapes) const {
 }
 
 void WorldObject::update(const SearchedShapes& of_search, const Parallel& parallel) {
+  if (pending_) make_pending_edits(parallel);
   const SearchedShapes shapes = of_this(of_search);
   const bool was_behind = needs_refit(shapes);
   const bool refits_elements =
@@ -206,12 +215,14 @@ std::optional<std::array<std::uint32_t, 2>> WorldObject::open_edge() {
 const VertexTriangles& WorldObject::vertex_triangles() {
   const std::uint8_t* const inert = resting_view().arrays.inert;
   if (vertex_triangles_ && !leaves_out_inert_ && inert == nullptr) return *vertex_triangles_;
-  const std::size_t count = octree_.triangles().size();
+  const std::size_t count = octree_.id_count();
+  const bool are_all = inert == nullptr && octree_.triangles().size() == count;
   std::vector<Triangle> triangles(count);
-  std::vector<std::uint8_t> inert_by_id(inert != nullptr ? count : 0);
-  for (std::uint32_t t = 0; t < count; ++t) {
-    triangles[octree_.triangle_ids()[t]] = octree_.triangles()[t];
-    if (inert != nullptr) inert_by_id[octree_.triangle_ids()[t]] = inert[t];
+  std::vector<std::uint8_t> inert_by_id(are_all ? 0 : count, 1);
+  for (std::uint32_t t = 0; t < octree_.triangles().size(); ++t) {
+    const std::uint32_t id = octree_.triangle_ids()[t];
+    triangles[id] = octree_.triangles()[t];
+    if (!are_all) inert_by_id[id] = inert != nullptr ? inert[t] : 0;
   }
   leaves_out_inert_ = inert != nullptr;
   return vertex_triangles_.emplace(triangles, inert_by_id, octree_.vertex_count());
@@ -223,7 +234,8 @@ std::span<const std::uint8_t> WorldObject::inward_triangles() {
   if (!orientation_) {
     std::vector<Triangle> faces;
     faces.reserve(face_count_);
-    for (std::uint32_t t = 0; t < face_count_; ++t) faces.push_back(octree_.user_triangle(t));
+    for (std::uint32_t t = 0; t < face_count_; ++t)
+      faces.push_back(octree_.has_triangle(t) ? octree_.user_triangle(t) : Triangle{});
     orientation_.emplace(std::move(faces), positions);
   } else if (oriented_version_ != placement_.shape_version()) {
     orientation_->judge(positions);
@@ -237,6 +249,13 @@ void WorldObject::measure_built_octree(const Parallel& parallel) {
   rebuild_policy_.set_cost_when_built(current_query_cost());
 }
 
+void WorldObject::forget_octree() {
+  fine_boxes_ = {};
+  resting_.forget_octree(face_count_);
+  moving_.forget_octree();
+  near_.forget_octree();
+}
+
 bool WorldObject::rebuild(const Parallel& parallel) {
   ObjectOctree octree = octree_.rebuilt(placement_.end().view(), parallel);
   if (!octree.refit(placement_.end(), {}, parallel) || has_extra_elements()) {
@@ -246,12 +265,9 @@ bool WorldObject::rebuild(const Parallel& parallel) {
   }
   if (!rebuild_policy_.accept(query_cost(octree.nodes(), octree.boxes()))) return false;
   ++rebuilds_;
-  fine_boxes_ = {};
   const SearchedShapes shapes = with_current(updated_);
   octree_ = std::move(octree);
-  resting_.forget_octree();
-  moving_.forget_octree();
-  near_.forget_octree();
+  forget_octree();
   // If memory runs out here, the next update refits the shapes.
   refit(shapes, parallel);
   return true;

@@ -2,14 +2,18 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.hpp"
 #include "mesh/vertex_triangles.hpp"
 #include "octree/object_octree.hpp"
 #include "supple/options.hpp"
+#include "supple/scene.hpp"
 #include "world/object/fine_boxes.hpp"
 #include "world/object/moving_shape.hpp"
 #include "world/object/orientation.hpp"
@@ -38,6 +42,17 @@ struct SearchedShapes {
 /// The data of objects that queries of points, rays and distances need.
 constexpr SearchedShapes shapes_of_queries{.resting = true, .cull_resting = true, .extra = true};
 
+/// The edges that open a solid, and how many more of its triangles use them in one direction than in the
+/// other.
+using SolidBoundary = std::map<std::array<std::uint32_t, 2>, int>;
+
+/// Edits of a mesh that has no faults.
+struct PendingEdits {
+  std::vector<std::uint32_t> removed;  ///< triangles, ascending
+  std::vector<Triangle> added;
+  std::optional<std::vector<Triangle>> extra;  ///< all edges and points of no triangle, when they change
+};
+
 /// One object of a scene: its octree, its placement, and the shapes that searches read.
 class WorldObject {
  public:
@@ -52,6 +67,27 @@ class WorldObject {
     return placement_;
   }
   const Placement& placement() const { return placement_; }
+  /// Adds vertices now, and removes and adds triangles at the next `update`. `all` are the edits since the
+  /// last one with `edit`, which has no faults.
+  void edit(const MeshEdit& edit, PendingEdits all, const Parallel& parallel);
+  const PendingEdits& pending_edits() const { return pending_ ? *pending_ : no_edits; }
+  /// Renumbers the triangles after an edit: returns the new id of each, or `no_place`. O(n log n).
+  std::vector<std::uint32_t> compact(const Parallel& parallel);
+  /// Also of vertices and triangles of an edit that the next `update` makes. Ids of removed triangles count.
+  std::size_t vertex_count() const { return placement_.end().size(); }
+  std::uint32_t triangle_count() const {
+    return face_count_ + static_cast<std::uint32_t>(pending_edits().added.size());
+  }
+  bool has_triangle(std::uint32_t triangle) const;
+  /// The edges and points of no triangle, after all edits.
+  std::vector<Triangle> extra_elements() const;
+  /// Keeps the vertices that count in place of welded ones; edits may name these.
+  void keep_welded(std::vector<std::uint32_t> same_vertex) { same_vertex_ = std::move(same_vertex); }
+  /// The vertex that counts in place of a welded one.
+  std::uint32_t same_vertex(std::uint32_t vertex) const {
+    return vertex < same_vertex_.size() ? same_vertex_[vertex] : vertex;
+  }
+
   /// Whether the object has moved since the last update.
   bool has_moved() const { return has_moved_; }
   /// Whether a shape or the volumes are out of date.
@@ -92,7 +128,7 @@ class WorldObject {
   const ObjectOctree& octree() const { return octree_; }
   /// The octree's triangles with ids from here on are edges and points of no triangle.
   std::uint32_t face_count() const { return face_count_; }
-  bool has_extra_elements() const { return face_count_ != octree_.triangles().size(); }
+  bool has_extra_elements() const { return face_count_ != octree_.id_count(); }
   std::span<const std::uint8_t> is_point() const { return is_point_; }
   /// Whether a face has a vertex that is not finite; its object contains nothing.
   bool has_inert_faces() const { return resting_.has_inert_faces(); }
@@ -158,6 +194,11 @@ class WorldObject {
   ObjectOptions options;
 
  private:
+  static const PendingEdits no_edits;
+  void make_pending_edits(const Parallel& parallel);
+  /// Call when the octree has changed.
+  void forget_octree();
+  void list_points(std::span<const Triangle> extra);
   void refit(const SearchedShapes& shapes, const Parallel& parallel);
   std::size_t update_resting(const SearchedShapes& shapes, const Parallel& parallel);
   bool is_lazy(const SearchedShapes& shapes) const { return shapes.lazy && !options.self_collision; }
@@ -167,7 +208,11 @@ class WorldObject {
   SearchedShapes with_current(SearchedShapes shapes) const;
   void update_volumes(const SearchedShapes& shapes);
 
-  std::uint32_t face_count_;
+  std::uint32_t face_count_;  // ids of triangles, also of removed ones
+  std::unique_ptr<PendingEdits> pending_;
+  std::vector<std::uint32_t> same_vertex_;   // empty unless vertices are welded
+  std::unique_ptr<SolidBoundary> boundary_;  // of a solid that was edited
+  bool is_edited_locally_;
   Descent descent_;
   ObjectOctree octree_;
   Placement placement_;
