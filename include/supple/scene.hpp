@@ -319,12 +319,17 @@ class Scene {
   const ObjectOptions& options(ObjectId object) const;
   std::size_t vertex_count(ObjectId object) const;    ///< of its mesh
   std::size_t triangle_count(ObjectId object) const;  ///< of its mesh, with those that edits removed
+  /// The vertices of a triangle, those that count in place of welded ones; nothing for one that an edit
+  /// removed. Throws `Error` when the object never had such a triangle.
+  std::optional<Triangle> triangle(ObjectId object, std::uint32_t triangle) const;
+  /// 0, and one more after each `edit` and `compact`.
+  std::uint64_t mesh_version(ObjectId object) const;
   /// The position that the exact tests use: with transforms and translations. Throws `Error` when there is no
   /// such vertex.
   Vec3d position(ObjectId object, std::uint32_t vertex) const;
   /// The vertex ids of one side of a record with a triangle or an element on each side, O(1),
   /// in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the
-  /// order of its corners. Throws `Error` when the object of a triangle was removed.
+  /// order of its corners. Throws `Error` when the triangle or its object was removed.
   template <class Pair>
   ElementVertices vertices_of(const Pair& pair, ContactSide side) const {
     const bool is_a = side == ContactSide::a;

@@ -25,6 +25,7 @@ struct ViewedObject {
   std::variant<std::monostate, WaveMotion, MassSpringMotion, RigidMotion> motion{};
   /// In the scene of a program; without an id, the object was removed.
   std::optional<ObjectId> id{};
+  std::uint64_t mesh_version = 0;
 };
 
 /// Time series of a recording: rows of numbers, and begin and end events of pairs.

@@ -56,10 +56,8 @@ nb::object positions_of_object(const Scene& scene, ObjectId id) {
 
 nb::object triangles_of_object(const Scene& scene, ObjectId id) {
   std::vector<Triangle> triangles(scene.triangle_count(id));
-  Contact triangle;
-  triangle.object_a = id;
-  for (triangle.triangle_a = 0; triangle.triangle_a < triangles.size(); ++triangle.triangle_a)
-    triangles[triangle.triangle_a] = scene.vertices_of(triangle, ContactSide::a).ids;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    triangles[t] = scene.triangle(id, t).value_or(Triangle{});
   return to_own_array<std::uint32_t, 3>(std::move(triangles));
 }
 
@@ -158,6 +156,32 @@ void bind_scene(nb::module_& module) {
            const Alone alone(core.guard());
            core.scene().set_vertices(id, span_of(vertices), positions_of(positions));
          });
+  setter(
+      "edit", [](SceneCore& core, ObjectId id, const List<std::uint32_t>& removed, const Array& added,
+                 const Array& new_vertices, const Array& new_starts,
+                 const Matrix<std::uint32_t, 2>& removed_edges, const Matrix<std::uint32_t, 2>& added_edges,
+                 const List<std::uint32_t>& removed_points, const List<std::uint32_t>& added_points) {
+        const auto edges_of = [](const Matrix<std::uint32_t, 2>& rows) {
+          return std::span(reinterpret_cast<const std::array<std::uint32_t, 2>*>(rows.data()), rows.shape(0));
+        };
+        const Alone alone(core.guard());
+        core.scene().edit(id, {.removed = span_of(removed),
+                               .added = triangles_of(added),
+                               .new_vertices = positions_of(new_vertices),
+                               .new_starts = positions_of(new_starts),
+                               .removed_edges = edges_of(removed_edges),
+                               .added_edges = edges_of(added_edges),
+                               .removed_points = span_of(removed_points),
+                               .added_points = span_of(added_points)});
+      });
+  scene.def("compact", [](SceneCore& core, ObjectId id) {
+    const Alone alone(core.guard());
+    return to_own_array<std::uint32_t>(core.scene().compact(id));
+  });
+  scene.def("mesh_version", [](SceneCore& core, ObjectId id) {
+    const Reading reading(core.guard());
+    return core.scene().mesh_version(id);
+  });
   setter("share_positions", [](SceneCore& core, ObjectId id, const Array& positions, nb::object array) {
     const Alone alone(core.guard());
     core.scene().share_positions(id, positions_of(positions));

@@ -499,6 +499,8 @@ CONTRACTS = {
         'A part of the step, 0 to 1, after which nothing has crossed and every pair of elements keeps a share of its distance at the start, `StepOptions.keep`; and the pair that ends it.\n\nA pair at distance d at the start keeps at least `keep` d. With separation s, a pair at distance d > s keeps at least s + `keep` (d - s). So a pair within the separation does not make the step 0, and one that parts does not end it. The exact step ends when the first pair is at the distance that it keeps. The returned step never exceeds the exact one, and is shorter by at most 2^-18 of it.\n\nElements that share a point at the start end the step there when the triangles around this point cut into each other just after the start, and when one leaves a face through the inner side on which it lies flat. Otherwise they end the step where they touch again, and not at all while they slide in one plane or move by the same vector. docs/guarantees.md has the exact conditions.\n\nOtherwise the step is positive. It is proven that also the positions from + t (to - from), computed in double, are reached without contact, for coordinates below 2^1022. Where rounding could make elements touch, the part is shortened by 2^-19 of it, then halved until it does not; the limiting pair is then the first that would touch.\n\nIgnores `ImpactOptions.max_time` and `skip_parting`. A step that is many times longer than the objects takes about the time of a short one, which is a few times that of `detect` for a short step. Throws `Error` when an option or a limit is out of its range.',
     'Scene::collision_free_steps':
         'A safe part of the step for each object, ascending, so that one pair does not stop all objects. Objects of one island move by the same part. After each island has moved by its part, or by less, nothing has crossed and every pair keeps its share as for `collision_free_step`; the islands can move in any order, or at the same time at different speeds.\n\nTwo objects that move are in one island unless every two of their elements are so far apart that what both move towards each other cannot use up their room. Objects that do not move have the step 1 and connect nothing. Takes longer than `collision_free_step`. A call that `limits` end returns one island of all objects that move. Throws `Error` as that function does.',
+    'Scene::compact':
+        'Renumbers the triangles that are left after edits from 0, in their order, and frees memory. Returns the new number of each id, or 2^32 - 1 for those that were removed. Vertices keep their numbers. O(n log n).',
     'Scene::contains':
         'ascending',
     'Scene::detect':
@@ -509,6 +511,8 @@ CONTRACTS = {
         'The same for all pairs of objects that `detect` would test and that are within `max_distance`, closed: one pair of features for each, ordered by objects. Throws `Error` when the distance is negative or NaN.',
     'Scene::earliest_impact':
         'The first continuous contact with `SceneOptions.impact`, or nothing when nothing touches within the step. Of contacts with the same time, it is the first in canonical order. The search skips pairs that can only touch later, so with many contacts it is faster than `detect`. Does not change `result` and `verify`. A call that `limits` end returns nothing: ask `StepLimits.stop`, or call `max_step`. Throws `Error` when a limit is out of its range.',
+    'Scene::edit':
+        'Changes the mesh of an object: removes and adds triangles, and adds vertices. Its id, options, events, manifolds, groups and user data stay; new vertices are in all groups. O(k log m) for k triangles and vertices and m of edits since the last search. The next search builds the parts of the octree around them again, O(k log n) and a copy of its arrays; with edges and points of no triangle, and with methods of comparison, it builds the whole octree.\n\nAll answers are those of a scene to which the edited mesh was added, with the same ids. A pair of objects that touches before and after an edit stays. On a path, a new triangle moves as its vertices do, as if it had been there at the start. A solid is judged at once: while its surface is open, its option `solid` is false, so that nothing penetrates it, and `inside` throws as for each open surface. New vertices are not welded; triangles may name welded ones.\n\nThrows `Error`, and changes nothing, when there is no such triangle, vertex, edge or point, when one is removed twice, when a position is not finite or of the other precision, when the number of starts is not that of the new vertices on a path and 0 at rest, and when the object is static or shares its positions.',
     'Scene::for_each_vertex':
         'Calls `function(object, vertex, weight)` for each vertex of a pair: first those of a, then those of b. The weights are the barycentric coordinates of the closest or touching points, positive for a and negative for b. So their sum is 0, but for rounding, and the sum of weight times position is the vector from the point of b to the point of a. Of a `Contact`, the points are the mean of its points in both triangles, or the centres of the triangles when `SceneOptions.contact_points` is off or a triangle is flat. O(1). Throws `Error` as `vertices_of` does; of a `Contact` also when it is not of `result`.',
     'Scene::inside':
@@ -517,6 +521,8 @@ CONTRACTS = {
         'Takes the memory of this result out of the scene: its spans stay valid as long as what is returned. `result` is then empty, as before the first step, and the next `detect` takes new memory; events go on. Call it before the next `detect` to keep a result without a copy of its own. O(size of the lists), because the scene keeps copies, from which `detect` takes the contacts of objects that do not move.',
     'Scene::max_step':
         'The largest safe part of the step, 0 to 1, and the pair that ends it: the time of the first impact, or 1 without one. Never later than the true first contact. Elements that touch at the start end it there only where their surfaces meet in the step, as for `collision_free_step`. Elements within the separation at the start do not end it when they part, as with `ImpactOptions.skip_parting`. Bodies that already cut through each other at the start do not shorten it. Throws `Error` as `earliest_impact` does.',
+    'Scene::mesh_version':
+        '0, and one more after each `edit` and `compact`.',
     'Scene::objects':
         'ascending',
     'Scene::options':
@@ -551,12 +557,14 @@ CONTRACTS = {
         "As `set_positions`, but the scene reads the user's memory instead of a copy, O(1). The memory must stay valid until the object gets other positions or is removed. To change the values, write them between two calls on the scene and then call this function again.\n\nThe scene copies the positions when it cannot read them in place: when x, y and z of a point are not adjacent (a column-major n x 3 matrix), and when the point stride or the address is not a multiple of the scalar's size. Searches for continuous contacts, proximity and safe steps also copy them.",
     'Scene::translate':
         'Moves the object by `offset` in O(1), without reading its vertices. Each coordinate becomes fl(position + D) in double. D is the translation of the last `set_transform` plus all offsets since it, or since the positions were last set.',
+    'Scene::triangle':
+        'The vertices of a triangle, those that count in place of welded ones; nothing for one that an edit removed. Throws `Error` when the object never had such a triangle.',
     'Scene::triangle_count':
-        'of its mesh',
+        'of its mesh, with those that edits removed',
     'Scene::vertex_count':
         'of its mesh',
     'Scene::vertices_of':
-        'The vertex ids of one side of a record with a triangle or an element on each side, O(1), in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners. Throws `Error` when the object of a triangle was removed.',
+        'The vertex ids of one side of a record with a triangle or an element on each side, O(1), in the order of the barycentric coordinates: an edge as in `element_a` or `element_b`, a triangle in the order of its corners. Throws `Error` when the triangle or its object was removed.',
     'SceneInspector::bounds':
         'The box of the object in the last `detect`; empty when no vertex is finite.',
     'SceneInspector::candidates':

@@ -135,8 +135,44 @@ class Object(Handle):
 
     @property
     def triangles(self) -> npt.NDArray[np.uint32]:
-        """The vertex ids of each triangle, (m, 3), as a copy."""
+        """The vertex ids of each triangle, (m, 3), as a copy; 0 three times for each that an edit removed."""
         return self._scene._core.triangles(self._id)
+
+    @property
+    def mesh_version(self) -> int:
+        """0, and one more after each `edit` and `compact`."""
+        return int(self._scene._core.mesh_version(self._id))
+
+    @contract(
+        "Scene::edit",
+        """The arguments are those of `MeshEdit`, and can be left out.""",
+    )
+    def edit(
+        self,
+        removed: Any = (),
+        added: Any = (),
+        new_vertices: Any = (),
+        new_starts: Any = (),
+        removed_edges: Any = (),
+        added_edges: Any = (),
+        removed_points: Any = (),
+        added_points: Any = (),
+    ) -> None:
+        self._scene._core.edit(
+            self._id,
+            _arrays.ids(removed, "removed"),
+            _arrays.triangles(added, "added"),
+            _arrays.positions(new_vertices, "new_vertices"),
+            _arrays.positions(new_starts, "new_starts"),
+            _arrays.ids(removed_edges, "removed_edges", 2),
+            _arrays.ids(added_edges, "added_edges", 2),
+            _arrays.ids(removed_points, "removed_points"),
+            _arrays.ids(added_points, "added_points"),
+        )
+
+    @contract("Scene::compact")
+    def compact(self) -> npt.NDArray[np.uint32]:
+        return self._scene._core.compact(self._id)
 
     @contract("Scene::set_vertices")
     def set_vertices(self, vertices: Any, positions: Any) -> None:

@@ -157,6 +157,46 @@ def test_transforms(sphere):
         b.set_vertices([-1], [[0, 0, 0]])
 
 
+def test_edits_of_meshes(sphere):
+    scene, a, b = two_spheres(sphere)
+    before = scene.detect()
+    began, count = len(before.contacts), a.triangle_count
+    touched = np.unique(before.contacts["triangle_a"])
+    corners = a.triangles[touched]
+    middles = a.positions[corners].mean(axis=1)
+    v = np.arange(a.vertex_count, a.vertex_count + len(touched))
+    p, q, r = corners.T
+    split = np.concatenate([np.stack(side, axis=1) for side in ((p, q, v), (q, r, v), (r, p, v))])
+    a.edit(removed=touched, added=split, new_vertices=middles)
+    assert a.mesh_version == 1 and a.triangle_count == count + 3 * len(touched)
+    assert not a.triangles[touched].any() and (a.triangles[count:] == split).all()
+    after = scene.detect()
+    assert len(after.contacts) >= began and not np.isin(after.contacts["triangle_a"], touched).any()
+    events = after.events  # a pair that touches before and after stays
+    assert [len(events[f"contact_{when}"]) for when in ("begin", "stay", "end")] == [0, 1, 0]
+    fresh = supple.Scene()
+    fresh.add(a.positions, np.delete(a.triangles, touched, axis=0))
+    fresh.add(b.positions, b.triangles)
+    numbers = a.compact()
+    assert (numbers[touched] == 2**32 - 1).all()
+    assert scene.detect().contacts.tobytes() == fresh.detect().contacts.tobytes()
+    assert scene.verify().agrees
+    for wrong, error in (
+        ({"removed": [10**6]}, "no triangle 1000000"),
+        ({"removed": [5, 5]}, "triangle 5 is removed twice"),
+        ({"added": [[0, 1, 10**6]]}, "triangle 0 uses vertex 1000000"),
+        ({"new_vertices": [[0, np.nan, 0]]}, "position of new vertex 0 is not finite"),
+        ({"new_vertices": [[0, 0, 0]], "new_starts": [[0, 0, 0]]}, "not on a path"),
+        ({"removed_edges": [[0, 1]]}, "no edge 0-1 to remove"),
+    ):
+        with pytest.raises(supple.Error, match=error):
+            a.edit(**wrong)
+    a.share_positions(a.positions)
+    with pytest.raises(supple.Error, match="shares its positions"):
+        a.edit(removed=[0])
+    assert a.mesh_version == 2
+
+
 def test_filters(sphere):
     scene, a, b = two_spheres(sphere)
     assert len(scene.detect().contacts) > 0

@@ -112,8 +112,8 @@ void Queries::closest(std::span<const Vec3d> points, std::span<std::optional<Clo
   const Lease use(*this);
   {
     const Lock lock(mutex_);
-    if (options.signed_distance) check_closed(world_, options.filter, "closest");
     list_objects(options.filter, "closest", *use);
+    if (options.signed_distance) check_closed(world_, options.filter, "closest");
     for (QueriedObject& object : use->objects) {
       if (!has_far_part(object.box, around)) continue;
       WorldObject& far = world_[object.id.index];
@@ -216,8 +216,8 @@ void Queries::inside(std::span<const Vec3d> points, std::span<Containment> resul
   const Lease use(*this);
   {
     const Lock lock(mutex_);
-    check_closed(world_, filter, "inside");
     list_objects(filter, "inside", *use);
+    check_closed(world_, filter, "inside");
   }
   const StopSignal stop = stop_of(limits);
   std::fill(results.begin(), results.end(), Containment::outside);

@@ -146,6 +146,16 @@ std::size_t Scene::triangle_count(ObjectId object) const {
   return implementation_->world.object(object, "triangle_count").triangle_count();
 }
 
+std::optional<Triangle> Scene::triangle(ObjectId object, std::uint32_t triangle) const {
+  const WorldObject& found = implementation_->world.object(object, "triangle");
+  if (triangle >= found.triangle_count()) check_triangle(found, triangle, "triangle");
+  return found.has_triangle(triangle) ? std::optional(found.triangle(triangle)) : std::nullopt;
+}
+
+std::uint64_t Scene::mesh_version(ObjectId object) const {
+  return implementation_->world.object(object, "mesh_version").mesh_version();
+}
+
 Vec3d Scene::position(ObjectId object, std::uint32_t vertex) const {
   const WorldObject& found = implementation_->world.object(object, "position");
   check_vertex(found, vertex, "position");
@@ -164,11 +174,8 @@ ElementVertices vertices_of(const Scene& scene, ObjectId id, FeatureKind kind,
   if (kind == FeatureKind::edge) return {{element[0], element[1]}, 2};
   const WorldObject& found = SceneAccess::of(scene).world.object(id, "vertices_of");
   check_triangle(found, element[0], "vertices_of");
-  if (!found.octree().has_triangle(element[0])) {
-    fail("vertices_of: " + found.options.name + " has no triangle " + std::to_string(element[0]) +
-         "; an edit removed it, or no call has searched the edited mesh yet");
-  }
-  return {found.octree().user_triangle(element[0]), 3};
+  check_triangle(found, element[0], "vertices_of");
+  return {found.triangle(element[0]), 3};
 }
 
 }  // namespace detail

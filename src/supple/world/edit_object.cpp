@@ -142,10 +142,7 @@ void WorldObject::edit(const MeshEdit& edit, PendingEdits all, const Parallel& p
   std::unique_ptr<SolidBoundary> boundary;
   if (boundary_ || options.solid) {
     boundary = boundary_ ? std::make_unique<SolidBoundary>(*boundary_) : std::make_unique<SolidBoundary>();
-    const auto triangle_of = [&](std::uint32_t id) {
-      return id < face_count_ ? octree_.user_triangle(id) : pending->added[id - face_count_];
-    };
-    for (const std::uint32_t id : edit.removed) add_to_boundary(triangle_of(id), -1, *boundary);
+    for (const std::uint32_t id : edit.removed) add_to_boundary(triangle(id), -1, *boundary);
     for (std::size_t i = pending_edits().added.size(); i < pending->added.size(); ++i)
       add_to_boundary(pending->added[i], 1, *boundary);
   }
@@ -162,6 +159,7 @@ void WorldObject::edit(const MeshEdit& edit, PendingEdits all, const Parallel& p
   if (boundary) options.solid = boundary->empty();
   boundary_ = std::move(boundary);
   pending_ = std::move(pending);
+  ++mesh_version_;
   has_moved_ = true;
 }
 
@@ -195,6 +193,7 @@ void WorldObject::make_pending_edits(const Parallel& parallel) {
   pending_.reset();
   forget_octree();
   knows_open_edge_ = false;
+  open_edge_.reset();
   vertex_triangles_.reset();
   orientation_.reset();
   inward_triangles();  // the present positions decide which sheets bound holes
@@ -218,6 +217,7 @@ std::vector<std::uint32_t> WorldObject::compact(const Parallel& parallel) {
   vertex_triangles_.reset();
   orientation_.reset();
   inward_triangles();  // the present positions decide which sheets bound holes
+  ++mesh_version_;
   has_moved_ = true;
   return numbers;
 }

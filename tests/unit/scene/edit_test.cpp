@@ -241,4 +241,90 @@ TEST(Edit, CompactRenumbersInOrder) {
   EXPECT_TRUE(verify(scene).agrees());
 }
 
+TEST(Edit, KeepsWhatBelongsToTheObject) {
+  Scene scene({.contacts = ContactKinds::penetration});
+  const TriangleMesh ball = make_icosphere(4);
+  const ObjectId a = scene.add(ball, {.solid = true, .user_data = 7}), b = scene.add(ball, {.solid = true});
+  scene.set_transform(b, {.translation = {1, 0, 0}});
+  const auto touch = [&] { return scene.detect().contact_events; };
+  EXPECT_EQ(touch().begin.size(), 1u);
+  scene.edit(a, {.removed = Ids{3, 4}});
+  EXPECT_FALSE(scene.options(a).solid) << "the surface is open";
+  EXPECT_EQ(scene.options(a).user_data, 7u);
+  std::array<Containment, 1> inside{};
+  EXPECT_THROW(scene.inside(std::array{Vec3d{}}, inside, {.object = a}), Error);
+  EXPECT_TRUE(touch().begin.empty() && scene.result().contact_events.end.empty()) << "the pair stays";
+  EXPECT_EQ(scene.triangle(a, 3), std::nullopt);
+  EXPECT_EQ(scene.triangle(a, 5), ball.triangles[5]);
+  scene.edit(a, {.added = std::vector{ball.triangles[3], ball.triangles[4]}});
+  EXPECT_TRUE(scene.options(a).solid);
+  EXPECT_EQ(scene.triangle(a, 321), ball.triangles[4]);
+  scene.detect();
+  EXPECT_TRUE(verify(scene).agrees());
+  EXPECT_FALSE(scene.result().penetrations.empty());
+  scene.inside(std::array{Vec3d{}}, inside, {.object = a});
+  EXPECT_EQ(inside[0], Containment::inside);
+  EXPECT_EQ(scene.mesh_version(a), 2u);
+}
+
+TEST(Edit, ChangesRodsAndParticles) {
+  Scene scene({.contacts = ContactKinds::proximity});
+  TriangleMesh rods{
+      .name = "rods", .positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 9}}, .triangles = {}};
+  const ObjectId a = scene.add(rods, {.edges = {{0, 1}, {1, 2}}, .points = {3}, .margin = 0.1});
+  const ObjectId b = scene.add(rods, {.edges = {{0, 1}}, .margin = 0.1});
+  scene.translate(b, {0.5, 0.1, 0});
+  EXPECT_FALSE(scene.detect().proximity_pairs.empty());
+  const std::array<std::uint32_t, 2> first{1, 0}, last{1, 2};
+  scene.edit(a, {.removed_edges = std::span(&first, 1)});
+  scene.edit(a, {.removed_edges = std::span(&last, 1)});
+  EXPECT_TRUE(scene.detect().proximity_pairs.empty());
+  EXPECT_THROW(scene.edit(a, {.removed_edges = std::span(&last, 1)}), Error);
+  scene.edit(a, {.new_vertices = std::vector<Vec3d>{{0.7, 0, 0}}, .added_points = Ids{4}});
+  EXPECT_EQ(scene.detect().proximity_pairs.size(), 1u);
+  EXPECT_TRUE(verify(scene).agrees());
+  scene.edit(a, {.added = std::vector<Triangle>{{0, 1, 3}}, .removed_points = Ids{3, 4}});
+  scene.detect();
+  EXPECT_TRUE(verify(scene).agrees());
+}
+
+TEST(Edit, RefusesWhatIsWrongAndChangesNothing) {
+  Scene scene;
+  const TriangleMesh ball = make_icosphere(2);
+  const ObjectId a = scene.add(ball, {.name = "ball"}),
+                 fixed = scene.add(ball, {.name = "floor", .is_static = true});
+  const std::vector<Vec3d> shifted(ball.positions.size(), Vec3d{1, 2, 3});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto error_of = [&](const MeshEdit& edit, ObjectId id) -> std::string {
+    try {
+      scene.edit(id, edit);
+    } catch (const Error& error) {
+      EXPECT_EQ(scene.triangle_count(id), ball.triangles.size());
+      EXPECT_EQ(scene.vertex_count(id), ball.positions.size());
+      EXPECT_EQ(scene.mesh_version(id), 0u);
+      return error.what();
+    }
+    return "";
+  };
+  const std::vector<Vec3d> one{{0, 0, 0}}, bad{{0, 0, 0}, {nan, 0, 0}};
+  const std::vector<Vec3f> one_float{{0, 0, 0}};
+  EXPECT_EQ(error_of({.removed = Ids{80}}, a), "edit: ball has no triangle 80; it has 80, numbered from 0");
+  EXPECT_EQ(error_of({.removed = Ids{7, 2, 7}}, a), "edit: ball: triangle 7 is removed twice");
+  EXPECT_EQ(error_of({.added = std::vector<Triangle>{{0, 1, 2}, {0, 1, 43}}, .new_vertices = one}, a),
+            "edit: ball: triangle 1 uses vertex 43, but there are 43 vertices, numbered from 0");
+  EXPECT_EQ(error_of({.new_vertices = bad}, a), "edit: ball: the position of new vertex 1 is not finite");
+  EXPECT_EQ(error_of({.new_vertices = one_float}, a),
+            "edit: ball has double positions, but the new vertices are float; give both in one precision");
+  EXPECT_NE(error_of({.removed = Ids{0}}, fixed).find("floor is static"), std::string::npos);
+  scene.set_motion(a, ball.positions, shifted);
+  EXPECT_EQ(error_of({.new_vertices = one}, a),
+            "edit: ball is on a path and has 0 starts for 1 new vertices; give 1");
+  scene.share_positions(a, shifted);
+  EXPECT_EQ(error_of({.removed = Ids{0}}, a),
+            "edit: ball shares its positions, so an edit cannot add to them; call set_positions first");
+  scene.set_positions(a, ball.positions);
+  scene.edit(a, {.removed = Ids{5}});
+  EXPECT_THROW(scene.edit(a, {.removed = Ids{5}}), Error);
+}
+
 }  // namespace supple::edit_test

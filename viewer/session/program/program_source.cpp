@@ -21,20 +21,18 @@ ViewedObject object_of(const Scene& scene, ObjectId id) {
   object.mesh.name = object.options.name;
   read(scene, id, object.mesh.positions);
   object.mesh.triangles.resize(scene.triangle_count(id));
-  Contact triangle;
-  triangle.object_a = id;
-  for (std::size_t t = 0; t < object.mesh.triangles.size(); ++t) {
-    triangle.triangle_a = static_cast<std::uint32_t>(t);
-    object.mesh.triangles[t] = scene.vertices_of(triangle, ContactSide::a).ids;
-  }
+  for (std::uint32_t t = 0; t < object.mesh.triangles.size(); ++t)
+    object.mesh.triangles[t] = scene.triangle(id, t).value_or(Triangle{});
   object.id = id;
+  object.mesh_version = scene.mesh_version(id);
   return object;
 }
 
 /// Whether the page would show something else.
 bool is_same(const Scene& scene, ObjectId id, const ViewedObject& object) {
   const ObjectOptions &now = scene.options(id), &before = object.options;
-  return object.id == id && now.is_static == before.is_static && now.margin == before.margin &&
+  return object.id == id && object.mesh_version == scene.mesh_version(id) &&
+         now.is_static == before.is_static && now.margin == before.margin &&
          now.self_collision == before.self_collision;
 }
 

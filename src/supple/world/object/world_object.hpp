@@ -79,6 +79,12 @@ class WorldObject {
     return face_count_ + static_cast<std::uint32_t>(pending_edits().added.size());
   }
   bool has_triangle(std::uint32_t triangle) const;
+  /// One that `has_triangle` knows.
+  const Triangle& triangle(std::uint32_t triangle) const {
+    return triangle < face_count_ ? octree_.user_triangle(triangle)
+                                  : pending_edits().added[triangle - face_count_];
+  }
+  std::uint64_t mesh_version() const { return mesh_version_; }
   /// The edges and points of no triangle, after all edits.
   std::vector<Triangle> extra_elements() const;
   /// Keeps the vertices that count in place of welded ones; edits may name these.
@@ -213,6 +219,7 @@ class WorldObject {
   std::vector<std::uint32_t> same_vertex_;   // empty unless vertices are welded
   std::unique_ptr<SolidBoundary> boundary_;  // of a solid that was edited
   bool is_edited_locally_;
+  std::uint64_t mesh_version_ = 0;
   Descent descent_;
   ObjectOctree octree_;
   Placement placement_;
