@@ -236,7 +236,22 @@ std::vector<Call> removing() {
                                       std::vector<std::uint32_t>(42, 2));
       },
       [](World& world) { world.detect(); },
+      [](World& world) {
+        world.scene.edit(world.ids[4], {.removed = std::vector<std::uint32_t>{3, 1},
+                                        .added = std::vector<Triangle>{{0, 1, 42}, {5, 42, 9}},
+                                        .new_vertices = std::vector<Vec3d>{{0.5, 0.5, 0}}});
+      },
+      [](World& world) { world.detect(); },
       [](World& world) { world.scene.set_vertex_groups(world.ids[4], {}, {}); },
+      [](World& world) {
+        world.scene.edit(world.ids[1], {.removed = std::vector<std::uint32_t>{2},
+                                        .added_edges = std::vector<std::array<std::uint32_t, 2>>{{0, 7}},
+                                        .added_points = std::vector<std::uint32_t>{1}});
+      },
+      [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); },
+      [](World& world) {
+        for (const std::uint32_t number : world.scene.compact(world.ids[4])) world.log.push_back(number);
+      },
       [](World& world) { world.detect({.contacts = all_kinds, .curves = true}); },
   };
 }

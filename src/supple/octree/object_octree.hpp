@@ -160,7 +160,7 @@ class ObjectOctree {
                                               const PositionsView& positions) const;
   std::uint32_t lowest_node_with(std::uint32_t triangle) const;
   std::uint32_t lowest_node_near(const Vec3d& point) const;
-  void splice(std::span<const EditedSubtree> subtrees);
+  void splice(std::span<const EditedSubtree> subtrees, std::size_t id_count);
   void list_nodes_of_vertices();
   void mark_with_ancestors(std::uint32_t node);
   RefittedOctree refitted(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,

@@ -153,14 +153,14 @@ void ObjectOctree::edit(std::span<const std::uint32_t> removed, std::span<const 
   std::vector<EditedSubtree> subtrees = subtrees_to_edit(removed, added, positions);
   std::vector<std::uint32_t> numbers(positions.size(), no_place);
   for (EditedSubtree& subtree : subtrees) subtree.build(positions, *this, numbers);
+  triangle_order_.reserve(id_count() + added.size());
+  splice(subtrees, id_count() + added.size());
   vertex_count_ = positions.size();
-  triangle_order_.resize(triangle_order_.size() + added.size(), no_place);
-  splice(subtrees);
   for (const std::uint32_t id : removed) triangle_order_[id] = no_place;
 }
 
 /// Copies the nodes level by level and the triangles in order, with the new subtrees in place of theirs.
-void ObjectOctree::splice(std::span<const EditedSubtree> subtrees) {
+void ObjectOctree::splice(std::span<const EditedSubtree> subtrees, std::size_t id_count) {
   constexpr std::uint32_t none = ~std::uint32_t{0};
   struct Source {
     std::uint32_t subtree, node;
@@ -255,6 +255,8 @@ void ObjectOctree::splice(std::span<const EditedSubtree> subtrees) {
   level_begin.push_back(static_cast<std::uint32_t>(nodes.size()));
   first_leaf_vertex.push_back(static_cast<std::uint32_t>(leaf_vertices.size()));
   leaf_vertices.resize(leaf_vertices.size() + leaf_vertices_ahead, 0);
+  boxes_.reserve(nodes.size());
+  // From here on, nothing takes memory.
   boxes_.resize(nodes.size());
   nodes_ = std::move(nodes);
   level_begin_ = std::move(level_begin);
@@ -263,6 +265,7 @@ void ObjectOctree::splice(std::span<const EditedSubtree> subtrees) {
   leaf_corners_ = std::move(corners);
   first_leaf_vertex_ = std::move(first_leaf_vertex);
   leaf_vertices_ = std::move(leaf_vertices);
+  triangle_order_.resize(id_count, no_place);
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) triangle_order_[triangle_ids_[t]] = t;
   first_node_.clear();
 }

@@ -165,6 +165,7 @@ void WorldObject::edit(const MeshEdit& edit, PendingEdits all, const Parallel& p
 
 /// Changes the octree as all edits since the last update say.
 void WorldObject::make_pending_edits(const Parallel& parallel) {
+  forget_octree();  // takes memory, so that nothing can fail between the changes below
   const PendingEdits& edits = *pending_;
   const PositionsView positions = placement_.end().view();
   const auto face_count = triangle_count();
@@ -184,14 +185,15 @@ void WorldObject::make_pending_edits(const Parallel& parallel) {
       if (has_triangle(id)) listed.push(edits.added[id - face_count_], id);
     }
     for (std::size_t i = 0; i < extra.size(); ++i) listed.push(extra[i], face_count + i);
-    octree_ = octree_.built_like_this(positions, listed, face_count + extra.size(), parallel);
-    list_points(extra);
+    ObjectOctree octree = octree_.built_like_this(positions, listed, face_count + extra.size(), parallel);
+    list_points(extra, positions.size());
+    octree_ = std::move(octree);
   } else {
     octree_.edit(removed, edits.added, positions, is_edited_locally_, parallel);
   }
   face_count_ = face_count;
   pending_.reset();
-  forget_octree();
+  resting_.forget_octree(face_count_);
   knows_open_edge_ = false;
   open_edge_.reset();
   vertex_triangles_.reset();
@@ -211,12 +213,18 @@ std::vector<std::uint32_t> WorldObject::compact(const Parallel& parallel) {
     }
     id = count++;
   }
+  std::optional<Orientation> orientation;  // by the present positions, as for an edit
+  if (options.solid) {
+    orientation.emplace(std::vector<Triangle>(listed.triangles.begin(), listed.triangles.begin() + faces),
+                        placement_.shape().view());
+  }
+  forget_octree();
   octree_ = octree_.built_like_this(placement_.end().view(), listed, count, parallel);
   face_count_ = faces;
-  forget_octree();
+  resting_.forget_octree(face_count_);
   vertex_triangles_.reset();
-  orientation_.reset();
-  inward_triangles();  // the present positions decide which sheets bound holes
+  orientation_ = std::move(orientation);
+  oriented_version_ = placement_.shape_version();
   ++mesh_version_;
   has_moved_ = true;
   return numbers;

@@ -69,16 +69,17 @@ WorldObject::WorldObject(const PositionsView& positions, std::vector<Triangle> f
   options.edges = {};
   options.points = {};
   options.same_vertex = {};
-  list_points(extra);
+  list_points(extra, positions.size());
 }
 
-void WorldObject::list_points(std::span<const Triangle> extra) {
-  is_point_.clear();
+void WorldObject::list_points(std::span<const Triangle> extra, std::size_t vertex_count) {
+  std::vector<std::uint8_t> is_point;
   for (const auto& [v, w, last] : extra) {
     if (v != w) continue;
-    is_point_.resize(std::max(octree_.vertex_count(), is_point_.size()), 0);
-    is_point_[v] = 1;
+    is_point.resize(vertex_count, 0);
+    is_point[v] = 1;
   }
+  is_point_ = std::move(is_point);
 }
 
 VertexWays WorldObject::ways(const Parallel& parallel) const {

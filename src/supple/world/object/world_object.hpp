@@ -204,7 +204,7 @@ class WorldObject {
   void make_pending_edits(const Parallel& parallel);
   /// Call when the octree has changed.
   void forget_octree();
-  void list_points(std::span<const Triangle> extra);
+  void list_points(std::span<const Triangle> extra, std::size_t vertex_count);
   void refit(const SearchedShapes& shapes, const Parallel& parallel);
   std::size_t update_resting(const SearchedShapes& shapes, const Parallel& parallel);
   bool is_lazy(const SearchedShapes& shapes) const { return shapes.lazy && !options.self_collision; }
