@@ -62,7 +62,7 @@ FULL = (
     + ["limits/bandwidth"]
     + [f"limits/refit/{triangles}" for triangles in (980, 18000, 69620, 1310720)]
     + ["memory/69620", "memory/bunny", "memory/moving/69620"]
-    + ["build/69620", "build/bunny", "scale/1310720", "scale/9996980", "frames/18000x9", "frames/surgery", "game/penetration", "game/proximity",
+    + ["build/69620", "build/bunny", "scale/1310720", "scale/9996980", "frames/18000x9", "frames/surgery", "edit/organ", "game/penetration", "game/proximity",
        "first/cloth-ball", "first/69620x64"]
 )
 QUICK = (

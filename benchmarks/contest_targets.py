@@ -179,6 +179,15 @@ def judged(cells):
             judge.add("99th percentile of frames with penetration" + with_curves + ", milliseconds", cell, "",
                       judge.cells[cell]["values"]["milliseconds, 99th percentile" + with_curves], reach, 0.8 * reach,
                       True)
+    for cell in judge.matching("edit/.*"):
+        values = judge.cells[cell]["values"]
+        for what, reach in (("an edit", 0.05), ("a frame with an edit", 1.0)):
+            judge.add(f"99th percentile of {what}, milliseconds", cell, "",
+                      values[f"milliseconds, 99th percentile of {what}"], reach, 0.8 * reach, True)
+        judge.add("frame with an edit", cell, "remove and add", values["milliseconds, median of a frame with remove and add"]
+                  / values["milliseconds, median of a frame with an edit"], 5, 10)
+        judge.add("queries after all edits", cell, "a fresh octree", values["milliseconds of queries, edited"]
+                  / values["milliseconds of queries, fresh"], 1.15, 1.05, True)
     for cell in judge.matching("game/.*"):
         values = judge.cells[cell]["values"]
         judge.add("manifolds", cell, "a plain loop",

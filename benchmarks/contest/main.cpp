@@ -24,7 +24,7 @@ constexpr const char* usage =
     "      step/CLOTH  growth/SHAPExCOPIES  threads/B/...  threads/C/...  limits/bandwidth  "
     "limits/refit/TRIANGLES  "
     "memory/SHAPE  memory/moving/SHAPE  build/SHAPE  scale/TRIANGLES  frames/SHAPExCOPIES  "
-    "frames/surgery  frames/cutting  first/SHAPExCOPIES  first/CLOTH\n"
+    "frames/surgery  edit/organ  first/SHAPExCOPIES  first/CLOTH\n"
     "      game/penetration  game/proximity\n"
     "FIELD: u1 u8 clu cl8   SHAPE: 980, 18000, 69620, ... or bunny   CLOTH: cloth-ball cloth-funnel "
     "crumpled passing rods\n"
@@ -79,7 +79,7 @@ void run(const Choice& choice) {
     run_first_frame(choice, after("first/"), output);
   } else if (cell.starts_with("game/")) {
     run_game(choice, after("game/"), output);
-  } else if (cell == "frames/cutting") {
+  } else if (cell == "edit/organ") {
     run_cutting(choice, output);
   } else if (cell == "frames/surgery") {
     run_surgery(choice, output);
