@@ -55,7 +55,7 @@ struct MeshEdit {
   /// Vertices; their ids are `vertex_count` and those after it. The positions are before the transform and
   /// the translation of the object, and have the precision of its positions. Finite.
   PositionsView new_vertices{};
-  /// Of an object on a path: where the new vertices start. `new_vertices` are where they end.
+  /// Where the new vertices of an object on a path start. `new_vertices` are where they end.
   PositionsView new_starts{};
   /// Edges and points of no triangle, as `ObjectOptions::edges` and `points`, by their vertices.
   std::span<const std::array<std::uint32_t, 2>> removed_edges{}, added_edges{};
