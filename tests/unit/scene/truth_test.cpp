@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -90,6 +91,61 @@ TEST_F(Truth, EveryConfigurationFindsThePairsOfPlacedMeshes) {
       Scene scene(configurations[i].scene);
       for (const TriangleMesh& mesh : meshes) scene.add(mesh, {.octree = configurations[i].octree});
       expect_pairs(scene.detect(), expected);
+    }
+  }
+}
+
+/// Removes the triangles that cross the plane x = c in the middle of the mesh, searches, and adds them again.
+/// Returns the number that each triangle had before.
+std::vector<std::uint32_t> cut_and_sew(Scene& scene, ObjectId id, const TriangleMesh& mesh) {
+  std::vector<double> xs;
+  for (const Vec3d& p : mesh.positions) xs.push_back(p.x);
+  std::ranges::nth_element(xs, xs.begin() + static_cast<std::ptrdiff_t>(xs.size() / 2));
+  const double middle = xs[xs.size() / 2];
+  std::vector<std::uint32_t> cut, before(mesh.triangles.size());
+  std::vector<Triangle> sewn;
+  std::iota(before.begin(), before.end(), 0u);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [p, q, r] = mesh.triangles[t];
+    const auto [low, high] = std::minmax({mesh.positions[p].x, mesh.positions[q].x, mesh.positions[r].x});
+    if (low > middle || high < middle) continue;
+    cut.push_back(t);
+    sewn.push_back(mesh.triangles[t]);
+  }
+  scene.edit(id, {.removed = cut});
+  scene.detect();
+  EXPECT_EQ(SceneInspector(scene).validate(), "");
+  scene.edit(id, {.added = sewn});
+  before.insert(before.end(), cut.begin(), cut.end());
+  return before;
+}
+
+TEST_F(Truth, MeshesCutByAPlaneAndSewnTouchAsBefore) {
+  for (const char* const kind : {"self", "pairs"}) {
+    for (const json& expected : truth[kind]) {
+      SCOPED_TRACE(expected["name"].get<std::string>());
+      Scene scene;
+      std::array<std::vector<std::uint32_t>, 2> before;
+      if (kind == std::string("self")) {
+        const TriangleMesh mesh = load(expected["mesh"]);
+        before[0] = before[1] = cut_and_sew(scene, scene.add(mesh, {.self_collision = true}), mesh);
+      } else {
+        for (std::size_t side = 0; side < 2; ++side) {
+          TriangleMesh placed = load(expected[side == 0 ? "a" : "b"]);
+          transform(placed, expected[side == 0 ? "ta" : "tb"]);
+          before[side] = cut_and_sew(scene, scene.add(placed), placed);
+        }
+      }
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+      for (const Contact& c : scene.detect().contacts) {
+        pairs.emplace_back(before[0][c.triangle_a], before[1][c.triangle_b]);
+        if (kind == std::string("self") && pairs.back().first > pairs.back().second)
+          std::swap(pairs.back().first, pairs.back().second);
+      }
+      std::ranges::sort(pairs);
+      std::string list;
+      for (const auto& [a, b] : pairs) list += std::to_string(a) + ' ' + std::to_string(b) + '\n';
+      EXPECT_EQ(sha256(list), expected["sha256_of_sorted_pairs"].get<std::string>());
     }
   }
 }
