@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -184,11 +185,8 @@ class BalancedSplitter {
       ++levels;
     }
     std::uint64_t count = (range.size() + leaves_of_child * most - 1) / (leaves_of_child * most);
-    if (levels == 1) {
-      count = std::max<std::uint64_t>(count, (range.size() + fill_ / 2) / fill_);
-    } else {
-      count = count <= 2 ? 2 : count <= 4 ? 4 : 8;
-    }
+    count = levels > 1 ? std::bit_ceil(count)
+                       : std::max<std::uint64_t>(count, (range.size() + fill_ / 2) / fill_);
     if (level + levels > options_.max_level) count = node_width;
     return {range, node, static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count, 2, node_width)),
             leaves_of_child * options_.leaf_size};
