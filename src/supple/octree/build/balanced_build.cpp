@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -22,7 +23,8 @@ constexpr float least_extent = 0x1p-80f;
 /// A cut may leave its wanted place by this part of all points, to use a gap.
 constexpr std::size_t gap_reach = 16;
 /// A cut between connected parts may cost this many times a cut in two halves, by the surface-area heuristic.
-constexpr double most_part_cost = 1.5;
+/// A square bundle of long parts takes 1.5.
+constexpr double most_part_cost = 1.6;
 /// Smaller parts on average are treated as loose triangles.
 constexpr std::size_t least_part_size = 4;
 
@@ -183,11 +185,8 @@ class BalancedSplitter {
       ++levels;
     }
     std::uint64_t count = (range.size() + leaves_of_child * most - 1) / (leaves_of_child * most);
-    if (levels == 1) {
-      count = std::max<std::uint64_t>(count, (range.size() + fill_ / 2) / fill_);
-    } else {
-      count = count <= 2 ? 2 : count <= 4 ? 4 : 8;
-    }
+    count = levels > 1 ? std::bit_ceil(count)
+                       : std::max<std::uint64_t>(count, (range.size() + fill_ / 2) / fill_);
     if (level + levels > options_.max_level) count = node_width;
     return {range, node, static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count, 2, node_width)),
             leaves_of_child * options_.leaf_size};
