@@ -118,8 +118,9 @@ TEST(SteadyStateMemory, SmallObjectsTakeLittleMemory) {
     for (Vec3d& position : part.positions) position.x += 3;
     scene.add(part);
   }
+  EXPECT_LE((mallinfo2().uordblks - before) / parts, 1950u);
   scene.detect();
-  EXPECT_LE((mallinfo2().uordblks - before) / parts, 3000u);
+  EXPECT_LE((mallinfo2().uordblks - before) / parts, 2300u);
 }
 #endif
 
