@@ -103,6 +103,27 @@ INSTANTIATE_TEST_SUITE_P(
                     Configuration{"SpheresOctree", BoundingVolume::sphere, BroadPhaseMethod::octree, 2000}),
     [](const auto& configuration) { return configuration.param.name; });
 
+#if !defined(SUPPLE_SANITIZED)
+/// Assemblies have 100,000 small parts.
+TEST(SteadyStateMemory, SmallObjectsTakeLittleMemory) {
+  constexpr int parts = 1000;
+  SceneOptions options;
+  options.threads = 1;
+  const std::size_t at_first = mallinfo2().uordblks;
+  Scene scene(options);
+  EXPECT_LE(mallinfo2().uordblks - at_first, 20000u);
+  TriangleMesh part{"", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const std::size_t before = mallinfo2().uordblks;
+  for (int i = 0; i < parts; ++i) {
+    for (Vec3d& position : part.positions) position.x += 3;
+    scene.add(part);
+  }
+  EXPECT_LE((mallinfo2().uordblks - before) / parts, 1950u);
+  scene.detect();
+  EXPECT_LE((mallinfo2().uordblks - before) / parts, 2300u);
+}
+#endif
+
 /// A cloth that folds, within its margin of itself.
 TEST(SteadyStateProximity, NoAllocationsAfterWarmUp) {
   constexpr int period = 12, steps = 5 * period;

@@ -96,8 +96,8 @@ void ObjectOctree::list_leaf_vertices(const Parallel& parallel) {
   std::vector<std::vector<Place>> last_places(parallel.worker_count());
   // Each leaf has room for the corners of its triangles, because their number of vertices is not known yet.
   std::vector<std::uint32_t> vertices(3 * triangles_.size()), counts(nodes_.size() * node_width, 0);
-  const std::size_t stride = triangles_.size() + corners_ahead;
-  leaf_corners_.assign(3 * stride, 0);
+  const std::size_t stride = triangles_.size();
+  leaf_corners_.assign(3 * stride + corners_ahead, 0);
   const auto for_leaves = [&](const auto& body) {
     parallel.for_ranges(nodes_.size(), 64, [&](std::size_t begin, std::size_t end, std::uint32_t worker) {
       for (std::size_t n = begin; n < end; ++n) {
@@ -136,7 +136,7 @@ void ObjectOctree::list_leaf_vertices(const Parallel& parallel) {
     total += (count + step - 1) / step * step;
   }
   first_leaf_vertex_.push_back(total);
-  leaf_vertices_.resize(total + leaf_vertices_ahead, 0);
+  leaf_vertices_.resize(total + (total < leaf_vertices_ahead ? 0 : leaf_vertices_ahead), 0);
   for_leaves([&](std::size_t leaf, std::uint32_t begin, std::uint32_t, std::uint32_t) {
     const std::uint32_t* const found = vertices.data() + 3 * std::size_t{begin};
     std::uint32_t* const end = std::copy_n(found, counts[leaf], &leaf_vertices_[first_leaf_vertex_[leaf]]);
@@ -174,62 +174,62 @@ std::optional<std::size_t> ObjectOctree::refit_moved(const VertexBuffer& vertice
                                                      const Parallel& parallel) {
   if (!std::all_of(moved.begin(), moved.end(), [&](std::uint32_t v) { return is_finite(vertices[v]); }))
     return std::nullopt;
-  if (first_node_.empty()) list_nodes_of_vertices();
-  stale_nodes_.clear();
+  if (!moved_) list_nodes_of_vertices();
+  MovedVertices& lists = *moved_;
+  std::vector<std::uint32_t>& stale = lists.stale;
+  stale.clear();
   for (const std::uint32_t vertex : moved) {
-    for (std::uint32_t i = first_node_[vertex]; i < first_node_[vertex + 1]; ++i)
-      mark_with_ancestors(nodes_of_vertices_[i]);
+    for (std::uint32_t i = lists.first[vertex]; i < lists.first[vertex + 1]; ++i) {
+      for (std::uint32_t node = lists.nodes[i]; std::exchange(lists.is_stale[node], std::uint8_t{1}) == 0;
+           node = nodes_[node].parent)
+        stale.push_back(node);
+    }
   }
-  std::sort(stale_nodes_.begin(), stale_nodes_.end());
-  for (const std::uint32_t node : stale_nodes_) is_stale_[node] = 0;
+  std::sort(stale.begin(), stale.end());
+  for (const std::uint32_t node : stale) lists.is_stale[node] = 0;
   const TriangleArrays arrays = arrays_of(triangles_, vertices, {});
   std::atomic<bool> all_finite = true;
   std::size_t triangles = 0;
-  for (std::size_t end = stale_nodes_.size(), begin = end; end > 0; end = begin) {
-    const std::uint32_t level_begin = level_begin_[nodes_[stale_nodes_[end - 1]].level];
-    while (begin > 0 && stale_nodes_[begin - 1] >= level_begin) --begin;
+  for (std::size_t end = stale.size(), begin = end; end > 0; end = begin) {
+    const std::uint32_t level_begin = level_begin_[nodes_[stale[end - 1]].level];
+    while (begin > 0 && stale[begin - 1] >= level_begin) --begin;
     parallel.for_ranges(end - begin, 16, [&](std::size_t first, std::size_t last, std::uint32_t) {
       for (std::size_t i = begin + first; i < begin + last; ++i) {
-        const std::uint32_t n = stale_nodes_[i];
+        const std::uint32_t n = stale[i];
         if (!refit_boxes(nodes_.data(), boxes_.data(), arrays, leaf_vertices(), n, n + 1)) all_finite = false;
         if (all_finite && volumes_) volumes_->refit(refitted(vertices, {}), n, n + 1);
       }
     });
     for (std::size_t i = begin; i < end; ++i) {
-      const OctreeNode& node = nodes_[stale_nodes_[i]];
+      const OctreeNode& node = nodes_[stale[i]];
       for (int child = 0; child < node.child_count; ++child)
         triangles += node.is_inner(child) ? 0 : node.size(child);
     }
   }
   if (!all_finite) return std::nullopt;
-  if (!stale_nodes_.empty()) box_ = enclosing_box(boxes_[0]);
-  if (!stale_nodes_.empty() && volumes_) volumes_->refit_object(refitted(vertices, {}), box_);
+  if (stale.empty()) return triangles;
+  box_ = enclosing_box(boxes_[0]);
+  if (volumes_) volumes_->refit_object(refitted(vertices, {}), box_);
   return triangles;
 }
 
-void ObjectOctree::mark_with_ancestors(std::uint32_t node) {
-  while (std::exchange(is_stale_[node], std::uint8_t{1}) == 0) {
-    stale_nodes_.push_back(node);
-    node = nodes_[node].parent;
-  }
-}
-
 void ObjectOctree::list_nodes_of_vertices() {
-  is_stale_.assign(nodes_.size(), 0);
-  stale_nodes_.reserve(nodes_.size());
-  first_node_.assign(vertex_count_ + 1, 0);
+  MovedVertices lists;
+  lists.is_stale.assign(nodes_.size(), 0);
+  lists.stale.reserve(nodes_.size());
+  lists.first.assign(vertex_count_ + 1, 0);
   const auto for_each_leaf_vertex = [&](const auto& function) {
     for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
       const std::uint32_t* const first = &first_leaf_vertex_[std::size_t{n} * node_width];
       for (std::uint32_t i = first[0]; i < first[node_width]; ++i) function(leaf_vertices_[i], n);
     }
   };
-  for_each_leaf_vertex([&](std::uint32_t vertex, std::uint32_t) { ++first_node_[vertex + 1]; });
-  std::partial_sum(first_node_.begin(), first_node_.end(), first_node_.begin());
-  nodes_of_vertices_.resize(first_node_.back());
-  std::vector<std::uint32_t> next(first_node_.begin(), first_node_.end() - 1);
-  for_each_leaf_vertex(
-      [&](std::uint32_t vertex, std::uint32_t n) { nodes_of_vertices_[next[vertex]++] = n; });
+  for_each_leaf_vertex([&](std::uint32_t vertex, std::uint32_t) { ++lists.first[vertex + 1]; });
+  std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
+  lists.nodes.resize(lists.first.back());
+  std::vector<std::uint32_t> next(lists.first.begin(), lists.first.end() - 1);
+  for_each_leaf_vertex([&](std::uint32_t vertex, std::uint32_t n) { lists.nodes[next[vertex]++] = n; });
+  moved_ = std::make_unique<MovedVertices>(std::move(lists));
 }
 
 std::size_t ObjectOctree::bytes() const {
@@ -237,10 +237,10 @@ std::size_t ObjectOctree::bytes() const {
          (volumes_ ? volumes_->bytes() : 0) + triangles_.capacity() * sizeof(Triangle) +
          (triangle_ids_.capacity() + triangle_order_.capacity() + level_begin_.capacity() +
           first_leaf_vertex_.capacity() + leaf_vertices_.capacity() + unused_vertices_.capacity() +
-          first_node_.capacity() + nodes_of_vertices_.capacity() + stale_nodes_.capacity()) *
+          (moved_ ? moved_->first.capacity() + moved_->nodes.capacity() + moved_->stale.capacity() : 0)) *
              sizeof(std::uint32_t) +
-         cell_numbers_.capacity() * sizeof(std::uint64_t) + leaf_corners_.capacity() + is_stale_.capacity() +
-         is_current_.capacity();
+         (moved_ ? moved_->is_stale.capacity() : 0) + cell_numbers_.capacity() * sizeof(std::uint64_t) +
+         leaf_corners_.capacity() + is_current_.capacity();
 }
 
 }  // namespace supple

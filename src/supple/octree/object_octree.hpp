@@ -55,7 +55,8 @@ class ObjectOctree {
   const NodeVolumes* volumes() const { return volumes_.get(); }
 
   LeafVertexArrays leaf_vertices() const {
-    return {first_leaf_vertex_.data(), leaf_vertices_.data(), leaf_corners_.data(), leaf_corners_.size() / 3};
+    return {first_leaf_vertex_.data(), leaf_vertices_.data(), leaf_corners_.data(), triangles_.size(),
+            leaf_vertices_.size() - first_leaf_vertex_.back()};
   }
 
   /// The triangles in octree order, with the user's vertex ids.
@@ -162,7 +163,6 @@ class ObjectOctree {
   std::uint32_t lowest_node_near(const Vec3d& point) const;
   void splice(std::span<const EditedSubtree> subtrees, std::size_t id_count);
   void list_nodes_of_vertices();
-  void mark_with_ancestors(std::uint32_t node);
   RefittedOctree refitted(const VertexBuffer& vertices, std::span<const std::uint8_t> inert,
                           bool are_nodes_current = true) const {
     return {nodes_,   boxes_.data(), triangles_,       leaf_vertices(),
@@ -180,10 +180,13 @@ class ObjectOctree {
   // `LeafVertexArrays`, and the vertices that no triangle uses, for methods of supple::comparison.
   std::vector<std::uint32_t> first_leaf_vertex_, leaf_vertices_, unused_vertices_;
   std::vector<std::uint8_t> leaf_corners_;
-  // For `refit_moved`: the nodes with a leaf that contains vertex v are `nodes_of_vertices_[first_node_[v]]`
-  // up to `nodes_of_vertices_[first_node_[v + 1]]`, and the nodes to refit with a byte for each node.
-  std::vector<std::uint32_t> first_node_, nodes_of_vertices_, stale_nodes_;
-  std::vector<std::uint8_t> is_stale_;
+  /// The nodes with a leaf that contains vertex v are `nodes[first[v]]` up to `nodes[first[v + 1]]`, and the
+  /// nodes to refit with a byte for each node.
+  struct MovedVertices {
+    std::vector<std::uint32_t> first, nodes, stale;
+    std::vector<std::uint8_t> is_stale;
+  };
+  std::unique_ptr<MovedVertices> moved_;  // since the first `refit_moved`
   std::vector<std::uint8_t> is_current_;  // by node, since `LazyRefit::refit_object`
   ObjectOctreeOptions options_;
   BoundingVolume bounding_volume_;

@@ -196,10 +196,9 @@ void ObjectOctree::splice(std::span<const EditedSubtree> subtrees, std::size_t i
           ids.push_back(subtree.listed.ids[t]);
         }
       });
-  const std::size_t stride = count + corners_ahead;
-  std::vector<std::uint8_t> corners(3 * stride, 0);
+  std::vector<std::uint8_t> corners(3 * count + corners_ahead, 0);
   for (std::size_t corner = 0; corner < 3; ++corner) {
-    auto to = corners.begin() + static_cast<std::ptrdiff_t>(corner * stride);
+    auto to = corners.begin() + static_cast<std::ptrdiff_t>(corner * count);
     const auto copy = [&](const ObjectOctree& octree, std::size_t begin, std::size_t end) {
       const LeafVertexArrays from = octree.leaf_vertices();
       to = std::copy(from.corners + corner * from.stride + begin, from.corners + corner * from.stride + end,
@@ -267,7 +266,7 @@ void ObjectOctree::splice(std::span<const EditedSubtree> subtrees, std::size_t i
   leaf_vertices_ = std::move(leaf_vertices);
   triangle_order_.resize(id_count, no_place);
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) triangle_order_[triangle_ids_[t]] = t;
-  first_node_.clear();
+  moved_.reset();
 }
 
 }  // namespace supple

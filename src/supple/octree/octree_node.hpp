@@ -78,9 +78,9 @@ static_assert(sizeof(OctreeNode) == 48);
 
 /// Vertex lists of leaves are padded to a multiple of this.
 constexpr std::size_t leaf_vertices_step = 4;
-/// This many more entries follow all lists: kernels prefetch so far ahead.
+/// Kernels prefetch so far ahead, and this many more entries follow all lists, unless these are shorter.
 constexpr std::size_t leaf_vertices_ahead = 48;
-/// This many more entries follow each array of corners.
+/// This many more entries follow the corners.
 constexpr std::size_t corners_ahead = 16;
 
 /// The distinct vertices of each leaf. Those of child i of node n are `vertices[first[8 n + i]]` up to
@@ -93,6 +93,7 @@ struct LeafVertexArrays {
   const std::uint32_t* vertices = nullptr;
   const std::uint8_t* corners = nullptr;
   std::size_t stride = 0;
+  std::size_t ahead = 0;  ///< entries after all lists
 };
 
 }  // namespace supple

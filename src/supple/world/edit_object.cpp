@@ -213,10 +213,11 @@ std::vector<std::uint32_t> WorldObject::compact(const Parallel& parallel) {
     }
     id = count++;
   }
-  std::optional<Orientation> orientation;  // by the present positions, as for an edit
+  std::unique_ptr<Orientation> orientation;  // by the present positions, as for an edit
   if (options.solid) {
-    orientation.emplace(std::vector<Triangle>(listed.triangles.begin(), listed.triangles.begin() + faces),
-                        placement_.shape().view());
+    orientation = std::make_unique<Orientation>(
+        std::vector<Triangle>(listed.triangles.begin(), listed.triangles.begin() + faces),
+        placement_.shape().view());
   }
   forget_octree();
   octree_ = octree_.built_like_this(placement_.end().view(), listed, count, parallel);

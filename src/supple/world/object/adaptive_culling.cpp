@@ -17,13 +17,13 @@ void AdaptiveCulling::update(std::uint64_t version, const ObjectOctree& octree,
     --steps_to_pause_;
     return;
   }
-  if (culling_.masks().empty()) culling_ = SelfCollisionCulling(octree, triangles);
-  culling_.refit(octree, triangles, start, end, parallel);
+  if (!culling_) culling_ = std::make_unique<SelfCollisionCulling>(octree, triangles);
+  culling_->refit(octree, triangles, start, end, parallel);
   culled_version_ = version;
   std::size_t children = 0, culled = 0;
   for (std::size_t node = 0; node < octree.nodes().size(); ++node) {
     children += octree.nodes()[node].child_count;
-    culled += static_cast<std::size_t>(std::popcount(culling_.masks()[node]));
+    culled += static_cast<std::size_t>(std::popcount(culling_->masks()[node]));
   }
   if (culled * least_share < children) steps_to_pause_ = pause;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "core/parallel.hpp"
@@ -20,19 +21,19 @@ class AdaptiveCulling {
               const VertexBuffer& start, const VertexBuffer& end, const Parallel& parallel);
   /// The masks of `SelfCollisionCulling`, or null when there are none for this version.
   const std::uint8_t* masks(std::uint64_t version) const {
-    return version == culled_version_ ? culling_.masks().data() : nullptr;
+    return version == culled_version_ ? culling_->masks().data() : nullptr;
   }
-  std::size_t bytes() const { return culling_.bytes(); }
+  std::size_t bytes() const { return culling_ ? culling_->bytes() : 0; }
 
   /// Call after the octree was rebuilt or edited. An object that is edited in each step is never culled.
   void forget_octree() {
-    culling_ = {};
+    culling_.reset();
     version_ = culled_version_ = 0;
     if (steps_to_pause_ == 0) steps_to_pause_ = 1;
   }
 
  private:
-  SelfCollisionCulling culling_;
+  std::unique_ptr<SelfCollisionCulling> culling_;
   std::uint64_t version_ = 0, culled_version_ = 0;
   std::uint32_t steps_to_pause_ =
       1;  // skips the first step: boundaries pay only for objects that keep moving

@@ -27,9 +27,10 @@ void Placement::share_positions(const PositionsView& positions, const Parallel& 
 }
 
 void Placement::set_motion(const PositionsView& from, const PositionsView& to, const Parallel& parallel) {
-  start_.reserve(from.size(), from.is_double());
+  if (!start_) start_ = std::make_unique<VertexBuffer>();
+  start_->reserve(from.size(), from.is_double());
   set_positions(to, parallel);
-  start_.assign(from, parallel);
+  start_->assign(from, parallel);
   has_motion_ = true;
 }
 
@@ -56,8 +57,8 @@ void Placement::set_vertices(std::span<const std::uint32_t> vertices, const Posi
   if (!has_shape_) {
     end_.set(vertices, positions, parallel);
   } else {
-    shape_.set(vertices, positions, parallel);
-    end_.transform(shape_, vertices, [&](const Vec3d& p) { return rotated(p); });
+    shape_->set(vertices, positions, parallel);
+    end_.transform(*shape_, vertices, [&](const Vec3d& p) { return rotated(p); });
   }
   ++version_;
   if (!is_listed) forget_moved();
@@ -68,11 +69,13 @@ void Placement::append(const PositionsView& positions, const PositionsView& star
   std::vector<Vec3d> transformed;
   for (std::size_t i = 0; has_shape_ && i < positions.size(); ++i)
     transformed.push_back(rotated(positions[i]));
-  for (VertexBuffer* const buffer : {&end_, &start_, &shape_}) buffer->reserve_more(positions.size());
+  for (VertexBuffer* const buffer : {&end_, start_.get(), shape_.get()}) {
+    if (buffer != nullptr) buffer->reserve_more(positions.size());
+  }
   if (is_baked_) restore(parallel);
-  if (has_shape_) shape_.append(positions);
+  if (has_shape_) shape_->append(positions);
   end_.append(has_shape_ ? PositionsView(transformed) : positions);
-  if (has_motion_) start_.append(start);
+  if (has_motion_) start_->append(start);
   ++shape_version_;
   change_all();
 }
@@ -107,12 +110,13 @@ void Placement::restore(const Parallel& parallel) {
 }
 
 void Placement::keep_shape() {
-  if (!std::exchange(has_shape_, true)) std::swap(shape_, end_);
+  if (!std::exchange(has_shape_, true)) std::swap(*shape_, end_);
 }
 
 /// Takes memory for `keep_shape` and `apply`.
 void Placement::reserve_transformed() {
-  (has_shape_ ? end_ : shape_).reserve(end_.size(), true);
+  if (!shape_) shape_ = std::make_unique<VertexBuffer>();
+  (has_shape_ ? end_ : *shape_).reserve(end_.size(), true);
 }
 
 Vec3d Placement::rotated(const Vec3d& p) const {
@@ -123,7 +127,7 @@ Vec3d Placement::rotated(const Vec3d& p) const {
 
 void Placement::apply(const Vec3d& translation, const Parallel& parallel) {
   const bool translates = translation != Vec3d{};
-  end_.transform(shape_, parallel,
+  end_.transform(*shape_, parallel,
                  [&](const Vec3d& p) { return translates ? rotated(p) + translation : rotated(p); });
   change_all();
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,7 +37,7 @@ class Placement {
   static int sign_of(const RigidTransform& transform);
 
   /// The ends of the path without the translation. Both are the same buffer for an object at rest.
-  const VertexBuffer& start() const { return has_motion_ ? start_ : end_; }
+  const VertexBuffer& start() const { return has_motion_ ? *start_ : end_; }
   const VertexBuffer& end() const { return end_; }
   bool has_motion() const { return has_motion_; }
   Vec3d translation() const { return is_baked_ ? Vec3d{} : translation_; }
@@ -62,7 +63,7 @@ class Placement {
     moved_since_ = version_;
   }
   /// The positions p.
-  const VertexBuffer& shape() const { return has_shape_ ? shape_ : end_; }
+  const VertexBuffer& shape() const { return has_shape_ ? *shape_ : end_; }
   /// Changes when all positions p change, or more than an eighth at once; never 0.
   std::uint64_t shape_version() const { return shape_version_; }
   /// Whether the determinant of R is negative.
@@ -79,8 +80,9 @@ class Placement {
   void apply(const Vec3d& translation, const Parallel& parallel);
 
   VertexBuffer end_;
-  VertexBuffer start_;  // of an object on a path
-  VertexBuffer shape_;  // p, once a transform made `end_` differ from it
+  // Null before they are needed, because most objects never need them.
+  std::unique_ptr<VertexBuffer> start_;  // of an object on a path
+  std::unique_ptr<VertexBuffer> shape_;  // p, once a transform made `end_` differ from it
   bool has_motion_ = false, has_shape_ = false, is_baked_ = false, is_mirrored_ = false;
   std::array<double, 9> rotation_ = RigidTransform{}.rotation;
   Vec3d translation_;

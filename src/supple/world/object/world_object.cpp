@@ -127,13 +127,14 @@ bool WorldObject::is_stale(const SearchedShapes& shapes) const {
 bool WorldObject::needs_refit(const SearchedShapes& shapes) const {
   const bool has_resting =
       is_lazy(shapes) ? resting_.has_object(placement_) : resting_.is_current(placement_);
-  return pending_ || (shapes.resting && !has_resting) || (shapes.moving && !moving_.is_current(placement_)) ||
+  return pending_ || (shapes.resting && !has_resting) ||
+         (shapes.moving && !moving().is_current(placement_)) ||
          (of_this(shapes).near && !near().is_current(placement_));
 }
 
 SearchedShapes WorldObject::with_current(SearchedShapes shapes) const {
   shapes.resting = shapes.resting || resting_.is_current(placement_);
-  shapes.moving = shapes.moving || moving_.is_current(placement_);
+  shapes.moving = shapes.moving || moving().is_current(placement_);
   shapes.near = shapes.near || near().is_current(placement_);
   return shapes;
 }
@@ -143,7 +144,7 @@ void WorldObject::update(const SearchedShapes& of_search, const Parallel& parall
   const SearchedShapes shapes = of_this(of_search);
   const bool was_behind = needs_refit(shapes);
   const bool refits_elements =
-      (shapes.moving && !moving_.is_current(placement_)) || (shapes.near && !near().is_current(placement_));
+      (shapes.moving && !moving().is_current(placement_)) || (shapes.near && !near().is_current(placement_));
   refitted_triangles_ = refits_elements ? octree_.triangles().size() : 0;
   refit(shapes, parallel);
   update_volumes(shapes);
@@ -158,12 +159,15 @@ void WorldObject::refit(const SearchedShapes& shapes, const Parallel& parallel) 
   // When one shape bakes the translation, the other one is out of date.
   do {
     if (wanted.resting) refitted_triangles_ = std::max(refitted_triangles_, update_resting(wanted, parallel));
-    if (wanted.moving) moving_.update(octree_, placement_, parallel);
-    if (wanted.near) (placement_.has_motion() ? near_ : moving_).update(octree_, placement_, parallel);
+    if (!wanted.moving && !wanted.near) continue;
+    if (!shapes_of_step_) shapes_of_step_ = std::make_unique<ShapesOfStep>();
+    auto& [way, end] = *shapes_of_step_;
+    if (wanted.moving) way.update(octree_, placement_, parallel);
+    if (wanted.near) (placement_.has_motion() ? end : way).update(octree_, placement_, parallel);
   } while (needs_refit(wanted));
   if (!options.self_collision || has_extra_elements()) return;
   if (wanted.cull_resting) resting_.update_culling(octree_, placement_, parallel);
-  if (wanted.cull_moving) moving_.update_culling(octree_, parallel);
+  if (wanted.cull_moving && shapes_of_step_) shapes_of_step_->way.update_culling(octree_, parallel);
 }
 
 std::size_t WorldObject::update_resting(const SearchedShapes& shapes, const Parallel& parallel) {
@@ -179,7 +183,7 @@ void WorldObject::update_volumes(const SearchedShapes& shapes) {
     sphere_ = moved(octree_.sphere(), placement_.translation());
     return;
   }
-  box_ = shapes.moving ? moving_.box() : near().box();
+  box_ = shapes.moving ? moving().box() : near().box();
   if (shapes.near) extend(box_, near().box());
   if (shapes.resting) extend(box_, octree_.box());
   box_ = moved(box_, placement_.translation());
@@ -188,7 +192,7 @@ void WorldObject::update_volumes(const SearchedShapes& shapes) {
 
 /// The query cost at the positions of the shape that is up to date: the resting one if both are.
 double WorldObject::current_query_cost() const {
-  const MovingShape& elements = moving_.is_current(placement_) ? moving_ : near();
+  const MovingShape& elements = moving().is_current(placement_) ? moving() : near();
   const bool is_resting = resting_.is_current(placement_) || !elements.is_current(placement_);
   return query_cost(octree_.nodes(), is_resting ? octree_.boxes() : elements.node_boxes());
 }
@@ -226,7 +230,8 @@ const VertexTriangles& WorldObject::vertex_triangles() {
     if (!are_all) inert_by_id[id] = inert != nullptr ? inert[t] : 0;
   }
   leaves_out_inert_ = inert != nullptr;
-  return vertex_triangles_.emplace(triangles, inert_by_id, octree_.vertex_count());
+  vertex_triangles_ = std::make_unique<VertexTriangles>(triangles, inert_by_id, octree_.vertex_count());
+  return *vertex_triangles_;
 }
 
 std::span<const std::uint8_t> WorldObject::inward_triangles() {
@@ -237,7 +242,7 @@ std::span<const std::uint8_t> WorldObject::inward_triangles() {
     faces.reserve(face_count_);
     for (std::uint32_t t = 0; t < face_count_; ++t)
       faces.push_back(octree_.has_triangle(t) ? octree_.user_triangle(t) : Triangle{});
-    orientation_.emplace(std::move(faces), positions);
+    orientation_ = std::make_unique<Orientation>(std::move(faces), positions);
   } else if (oriented_version_ != placement_.shape_version()) {
     orientation_->judge(positions);
   }
@@ -253,8 +258,9 @@ void WorldObject::measure_built_octree(const Parallel& parallel) {
 void WorldObject::forget_octree() {
   fine_boxes_ = {};
   resting_.forget_octree(face_count_);
-  moving_.forget_octree();
-  near_.forget_octree();
+  if (!shapes_of_step_) return;
+  shapes_of_step_->way.forget_octree();
+  shapes_of_step_->end.forget_octree();
 }
 
 bool WorldObject::rebuild(const Parallel& parallel) {

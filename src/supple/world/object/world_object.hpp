@@ -148,9 +148,9 @@ class WorldObject {
   }
   /// O(n).
   VertexWays ways(const Parallel& parallel) const;
-  const MovingShape& moving() const { return moving_; }
+  const MovingShape& moving() const { return shapes_of_step().way; }
   /// The elements at the end of the step: those of `moving` for an object at rest.
-  const MovingShape& near() const { return placement_.has_motion() ? near_ : moving_; }
+  const MovingShape& near() const { return placement_.has_motion() ? shapes_of_step().end : moving(); }
   bool needs_fine_boxes() const { return FineBoxes::are_needed(resting_view()); }
   /// Takes O(n) when the octree or the positions have changed.
   void update_fine_boxes() { fine_boxes_.update(resting_view(), placement_.end(), placement_.version()); }
@@ -162,7 +162,7 @@ class WorldObject {
     return view;
   }
   OctreeView moving_view() const {
-    OctreeView view = moving_.view(octree_, placement_);
+    OctreeView view = moving().view(octree_, placement_);
     if (has_extra_elements()) view.culled = nullptr;
     return view;
   }
@@ -173,7 +173,7 @@ class WorldObject {
   }
   /// The user's ids, ascending.
   std::span<const std::uint32_t> non_finite_vertices(const SearchedShapes& shapes) const {
-    if (shapes.moving) return moving_.non_finite_vertices();
+    if (shapes.moving) return moving().non_finite_vertices();
     return shapes.resting ? resting_.non_finite_vertices() : near().non_finite_vertices();
   }
   /// The position of a vertex that is not finite: at the end of the step, or at its start if the end is
@@ -191,7 +191,10 @@ class WorldObject {
   /// these have changed.
   std::span<const std::uint8_t> inward_triangles();
   /// Memory of the octree and its shapes, without that of the positions.
-  std::size_t bytes() const { return octree_.bytes() + resting_.bytes() + moving_.bytes() + near_.bytes(); }
+  std::size_t bytes() const {
+    const ShapesOfStep& step = shapes_of_step();
+    return octree_.bytes() + resting_.bytes() + step.way.bytes() + step.end.bytes();
+  }
   std::uint64_t rebuilds() const { return rebuilds_; }
   /// `query_cost` of the boxes of a shape that is up to date.
   double current_query_cost() const;
@@ -205,6 +208,13 @@ class WorldObject {
   /// Call when the octree has changed.
   void forget_octree();
   void list_points(std::span<const Triangle> extra, std::size_t vertex_count);
+  struct ShapesOfStep {
+    MovingShape way{MovingShape::Part::way}, end{MovingShape::Part::end};
+  };
+  const ShapesOfStep& shapes_of_step() const {
+    static const ShapesOfStep none;
+    return shapes_of_step_ ? *shapes_of_step_ : none;
+  }
   void refit(const SearchedShapes& shapes, const Parallel& parallel);
   std::size_t update_resting(const SearchedShapes& shapes, const Parallel& parallel);
   bool is_lazy(const SearchedShapes& shapes) const { return shapes.lazy && !options.self_collision; }
@@ -228,7 +238,7 @@ class WorldObject {
     Aabb box;
     std::uint64_t version = 0;  // of the placement
   } bounds_;
-  MovingShape moving_{MovingShape::Part::way}, near_{MovingShape::Part::end};
+  std::unique_ptr<ShapesOfStep> shapes_of_step_;  // null before the first search for them, as they are large
   FineBoxes fine_boxes_;
   RebuildPolicy rebuild_policy_;
   std::uint64_t rebuilds_ = 0;
@@ -238,9 +248,9 @@ class WorldObject {
   bool has_moved_ = true;
   bool knows_open_edge_ = false;
   std::optional<std::array<std::uint32_t, 2>> open_edge_;
-  std::optional<VertexTriangles> vertex_triangles_;
+  std::unique_ptr<VertexTriangles> vertex_triangles_;
   bool leaves_out_inert_ = false;  // `vertex_triangles_` does
-  std::optional<Orientation> orientation_;
+  std::unique_ptr<Orientation> orientation_;
   std::uint64_t oriented_version_ = 0;  // of the shape
   SearchedShapes updated_;              // by the last update
   Aabb box_;
