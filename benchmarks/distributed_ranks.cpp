@@ -185,10 +185,11 @@ PositionsToSend positions_to_send(const std::vector<Owned>& owned, int rank) {
   return found;
 }
 
-double peak_megabytes() {
+/// VmRSS is the memory now, VmHWM its peak.
+double megabytes(const char* name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) return std::atof(line.c_str() + 6) / 1024;
+    if (line.starts_with(name)) return std::atof(line.c_str() + 6) / 1024;
   }
   return 0;
 }
@@ -217,6 +218,7 @@ int run(int argc, char** argv) {
         MPI_COMM_WORLD, DistributedOptions{.scene = {.threads = 1}, .results = ResultPlacement::spread});
   }
   double triangles = 0;
+  const double of_meshes = megabytes("VmRSS:");
   for (Owned& object : owned) {
     move(object, 0);
     triangles += static_cast<double>(object.triangles.size());
@@ -259,7 +261,8 @@ int run(int argc, char** argv) {
                      values.end());
     return values[values.size() / 2];
   };
-  const double peak = peak_megabytes();
+  const double peak = megabytes("VmHWM:") - of_meshes, steady = megabytes("VmRSS:") - of_meshes;
+  std::fprintf(stderr, "rank %d peak %.1f steady %.1f cpu %.4f\n", rank, peak, steady, cpu.back());
   cpu.erase(cpu.begin(), cpu.begin() + std::min<std::ptrdiff_t>(2, std::ssize(cpu)));
   const DistributedStats work = is_plain ? DistributedStats{} : distributed->stats();
   distributed.reset();
