@@ -8,7 +8,8 @@
 // cut into one strip for each rank; or tiles:SIDE, such a sheet cut into one tile for each rank, with one
 // small ball for about 31,000 of its triangles, which is on the rank of the tile at its center, for ranks
 // that are a power of two. Prints a line of JSON. Values `…_of_rank` are those of the rank that has most,
-// other counts are sums over all ranks. Processor time is that outside of MPI.
+// other counts are sums over all ranks. Processor time is that outside of MPI, memory that besides the
+// meshes.
 
 #include <algorithm>
 #include <array>
@@ -261,8 +262,7 @@ int run(int argc, char** argv) {
                      values.end());
     return values[values.size() / 2];
   };
-  const double peak = megabytes("VmHWM:") - of_meshes, steady = megabytes("VmRSS:") - of_meshes;
-  std::fprintf(stderr, "rank %d peak %.1f steady %.1f cpu %.4f\n", rank, peak, steady, cpu.back());
+  const double peak = megabytes("VmHWM:") - of_meshes;
   cpu.erase(cpu.begin(), cpu.begin() + std::min<std::ptrdiff_t>(2, std::ssize(cpu)));
   const DistributedStats work = is_plain ? DistributedStats{} : distributed->stats();
   distributed.reset();
