@@ -8,7 +8,8 @@
 // cut into one strip for each rank; or tiles:SIDE, such a sheet cut into one tile for each rank, with one
 // small ball for about 31,000 of its triangles, which is on the rank of the tile at its center, for ranks
 // that are a power of two. Prints a line of JSON. Values `…_of_rank` are those of the rank that has most,
-// other counts are sums over all ranks. Processor time is that outside of MPI.
+// other counts are sums over all ranks. Processor time is that outside of MPI, memory that besides the
+// meshes.
 
 #include <algorithm>
 #include <array>
@@ -185,10 +186,11 @@ PositionsToSend positions_to_send(const std::vector<Owned>& owned, int rank) {
   return found;
 }
 
-double peak_megabytes() {
+/// VmRSS is the memory now, VmHWM its peak.
+double megabytes(const char* name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) return std::atof(line.c_str() + 6) / 1024;
+    if (line.starts_with(name)) return std::atof(line.c_str() + 6) / 1024;
   }
   return 0;
 }
@@ -217,6 +219,7 @@ int run(int argc, char** argv) {
         MPI_COMM_WORLD, DistributedOptions{.scene = {.threads = 1}, .results = ResultPlacement::spread});
   }
   double triangles = 0;
+  const double of_meshes = megabytes("VmRSS:");
   for (Owned& object : owned) {
     move(object, 0);
     triangles += static_cast<double>(object.triangles.size());
@@ -259,7 +262,7 @@ int run(int argc, char** argv) {
                      values.end());
     return values[values.size() / 2];
   };
-  const double peak = peak_megabytes();
+  const double peak = megabytes("VmHWM:") - of_meshes;
   cpu.erase(cpu.begin(), cpu.begin() + std::min<std::ptrdiff_t>(2, std::ssize(cpu)));
   const DistributedStats work = is_plain ? DistributedStats{} : distributed->stats();
   distributed.reset();

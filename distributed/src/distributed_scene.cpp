@@ -274,7 +274,7 @@ std::span<const std::uint32_t> DistributedScene::part_vertices(ObjectId id) cons
 std::vector<Vec3d> DistributedScene::positions(ObjectId id) const {
   const HomeObject& object = implementation_->home(id, "positions");
   std::vector<Vec3d> found;
-  for (std::size_t v = 0; v < object.vertex_count(); ++v) found.push_back(object.position(v));
+  for (std::size_t v = 0; v < object.vertex_count(); ++v) found.push_back(object.end()[v]);
   return found;
 }
 int DistributedScene::rank() const {

@@ -258,6 +258,7 @@ void DistributedScene::Implementation::find_cluster_pairs() {
 void DistributedScene::Implementation::request_clusters() {
   outbox_.clear();
   for (const auto& [name, work] : needed_) {
+    if (name.home == ranks.rank()) continue;  // `take_clusters` takes it
     Writer to = outbox_.to(name.home);
     const auto version = local_.version_of(name);
     to.put(Request{name, version.has_value(), version.value_or(0), work});
@@ -316,6 +317,19 @@ void DistributedScene::Implementation::answer_requests() {
 void DistributedScene::Implementation::take_clusters() {
   owners_.clear();
   local_.begin();
+  for (auto [name, work] : needed_) {
+    if (name.home != ranks.rank()) continue;
+    HomeObject& object = homes_.at(name.object);
+    owners_[name.object] = object.first_home;
+    name.addition = object.addition;
+    if (name.cluster != all_clusters) {
+      object.clusters[name.cluster].work += work;
+      local_.take_own(name, object);
+      continue;
+    }
+    for (name.cluster = 0; name.cluster < object.clusters.size(); ++name.cluster)
+      local_.take_own(name, object);
+  }
   inbox_.for_each([&](Reader& from, int) {
     while (!from.is_done()) {
       const auto answer = from.get<Answer>();

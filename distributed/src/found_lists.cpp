@@ -18,7 +18,8 @@ struct Reference {
   };
   std::size_t list = 0;
   const FieldInfo* first = nullptr;
-  std::vector<Part> parts;  // one after the other
+  std::vector<Part> parts;       // one after the other
+  bool counts_contacts = false;  // the rows count those of all objects
 };
 
 /// By list.
@@ -32,6 +33,7 @@ const std::vector<std::vector<Reference>>& references_of_lists() {
         Reference& range = of_list.emplace_back();
         range.list = place_of_list(first.role.list);
         range.first = &first;
+        range.counts_contacts = list_infos()[range.list].record.fields[0].role.names == Names::first_row;
         for (const FieldInfo& size : list.record.fields) {
           if (size.role.names == Names::rows && std::string_view(size.role.list) == first.role.list)
             range.parts.push_back({&size, size.role.side});
@@ -39,6 +41,18 @@ const std::vector<std::vector<Reference>>& references_of_lists() {
       }
     }
     return ranges;
+  }();
+  return all;
+}
+
+/// The records of the lists with the members alone that name objects and what belongs to them.
+const std::vector<RecordInfo>& naming_records() {
+  static const std::vector<RecordInfo> all = [] {
+    std::vector<RecordInfo> records;
+    for (const ListInfo& list : list_infos())
+      std::erase_if(records.emplace_back(list.record).fields,
+                    [](const FieldInfo& field) { return !is_name(field); });
+    return records;
   }();
   return all;
 }
@@ -75,10 +89,10 @@ bool is_before(const RecordInfo& record, const std::byte* p, const std::byte* q)
 void FoundLists::count_contacts(std::size_t list, std::size_t i, std::span<const ContactGroup> groups,
                                 bool from_all) {
   for (const Reference& range : references_of_lists()[list]) {
+    if (!range.counts_contacts) continue;
     const FieldInfo& value = list_infos()[range.list].record.fields[0];
-    if (value.role.names != Names::first_row) continue;
     const std::byte* const of_row = row(list, i);
-    const auto [a, b] = objects_of(list_infos()[list].record, of_row);
+    const auto [a, b] = objects_of(naming_records()[list], of_row);
     const auto group = std::lower_bound(
         groups.begin(), groups.end(), std::tuple(a, b),
         [](const ContactGroup& p, const auto& objects) { return std::tuple(p.a, p.b) < objects; });
@@ -111,12 +125,12 @@ void FoundLists::add(std::size_t list, std::size_t of_row, std::span<const ListR
 
 /// Renumbers a row and all to which it refers.
 void FoundLists::renumber(std::size_t list, std::size_t i, const Numbers& numbers) {
-  const RecordInfo& record = list_infos()[list].record;
+  const RecordInfo& record = naming_records()[list];
   std::byte* const of_row = row(list, i);
   const std::array<ObjectId, 2> objects = objects_of(record, of_row);
   for (const Reference& range : references_of_lists()[list]) {
     if (rows_[range.list].empty()) continue;  // contacts without points
-    const RecordInfo& referred = list_infos()[range.list].record;
+    const RecordInfo& referred = naming_records()[range.list];
     std::size_t next = first_of(range, of_row);
     for (const auto& [length, side] : range.parts) {
       for (std::uint64_t k = number_of(*length, of_row); k > 0; --k)
@@ -137,6 +151,7 @@ void FoundLists::clear() {
   for (auto& list : pairs) list.clear();
   non_finite_vertices.clear();
   for (auto& list : rows_) list.clear();
+  is_sorted_ = true;
 }
 
 bool FoundLists::is_empty() const {
@@ -157,6 +172,7 @@ void FoundLists::append(Reader& from) {
   for (auto& list : pairs) from.append_all(list);
   from.append_all(non_finite_vertices);
   for (auto& list : rows_) from.append_all(list);
+  is_sorted_ = false;
   for (std::size_t list = 0; list < rows_.size(); ++list) {
     for (const Reference& range : references_of_lists()[list]) {
       for (std::uint32_t i = old[list]; i < count(list); ++i)
@@ -173,7 +189,7 @@ void FoundLists::sort() {
   const auto same = std::ranges::unique(non_finite_vertices, {}, key);
   non_finite_vertices.erase(same.begin(), same.end());
   for (std::size_t list = 0; list < rows_.size(); ++list) {
-    if (!is_referred_to(list)) sort(list);
+    if (!is_sorted_ && !is_referred_to(list)) sort(list);
   }
 }
 
@@ -219,7 +235,7 @@ void FoundLists::sort(std::size_t list) {
 void FoundLists::list_groups(std::size_t list, std::vector<ContactGroup>& groups) {
   groups.clear();
   for (std::uint32_t i = 0; i < count(list); ++i) {
-    const auto [a, b] = objects_of(list_infos()[list].record, row(list, i));
+    const auto [a, b] = objects_of(naming_records()[list], row(list, i));
     if (groups.empty() || groups.back().a != a || groups.back().b != b) groups.push_back({a, b, i, 0});
     ++groups.back().contact_count;
   }
@@ -235,6 +251,7 @@ void FoundLists::list(DetectResult& result) {
     result.*contact_kinds[k].groups = groups_[k];
   }
   for (std::size_t list = 0; list < rows_.size(); ++list) {
+    if (std::ranges::none_of(references_of_lists()[list], &Reference::counts_contacts)) continue;
     for (std::uint32_t i = 0; i < count(list); ++i) count_contacts(list, i, result.groups, false);
   }
   result.object_pairs = pairs[of_volumes];

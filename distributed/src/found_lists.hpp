@@ -47,17 +47,19 @@ class FoundLists {
 
  private:
   std::byte* row(std::size_t list, std::size_t i) {
-    return rows_[list].data() + i * list_infos()[list].record.bytes;
+    return rows_[list].data() + i * infos_[list].record.bytes;
   }
   std::uint32_t count(std::size_t list) const {
-    return static_cast<std::uint32_t>(rows_[list].size() / list_infos()[list].record.bytes);
+    return static_cast<std::uint32_t>(rows_[list].size() / infos_[list].record.bytes);
   }
   void renumber(std::size_t list, std::size_t i, const Numbers& numbers);
   void sort(std::size_t list);
   void list_groups(std::size_t list, std::vector<ContactGroup>& groups);
   void count_contacts(std::size_t list, std::size_t i, std::span<const ContactGroup> groups, bool from_all);
 
+  const ListInfo* infos_ = list_infos().data();
   std::vector<std::vector<std::byte>> rows_;  // by list
+  bool is_sorted_ = true;                     // the rows are those of one rank, in order
   std::array<std::vector<ContactGroup>, contact_kinds.size()> groups_;
 };
 

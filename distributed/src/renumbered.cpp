@@ -14,6 +14,12 @@ std::array<ObjectId, 2> objects_of(const RecordInfo& record, const std::byte* ro
   return objects;
 }
 
+bool is_name(const FieldInfo& field) {
+  const Names names = field.role.names;
+  return names == Names::object || names == Names::triangle || names == Names::vertex ||
+         names == Names::element;
+}
+
 void renumber(const RecordInfo& record, std::byte* row, const std::array<ObjectId, 2>& objects,
               const Numbers& numbers, char side) {
   for (const FieldInfo& field : record.fields) {
@@ -22,7 +28,7 @@ void renumber(const RecordInfo& record, std::byte* row, const std::array<ObjectI
     if (role.names == Names::object) {
       const ObjectId other = numbers.object(object);
       std::memcpy(row + field.offset, &other, sizeof other);
-    } else if (role.names == Names::triangle || role.names == Names::vertex || role.names == Names::element) {
+    } else if (is_name(field)) {
       const bool is_face =
           role.names == Names::triangle ||
           (role.names == Names::element && record.kind_of_element(row, role.side) == FeatureKind::face);

@@ -21,6 +21,9 @@ class Numbers {
 /// Objects a and b of a row; a row without b has a twice.
 std::array<ObjectId, 2> objects_of(const RecordInfo& record, const std::byte* row);
 
+/// Whether a member names objects or what belongs to them.
+bool is_name(const FieldInfo& field);
+
 /// Gives a row of a record other numbers. `objects` are those of the row. A vertex of no side is one of the
 /// object `side`.
 void renumber(const RecordInfo& record, std::byte* row, const std::array<ObjectId, 2>& objects,

@@ -41,6 +41,9 @@ std::vector<Triangle> checked_elements(const TrianglesView& triangles, std::size
   return elements;
 }
 
+/// More elements could have more corners than 16 bits can count.
+constexpr std::uint32_t most_elements = 65535 / 3;
+
 template <class Scalar>
 void write_vertices(const std::vector<Scalar>& xyz, std::span<const std::uint32_t> vertices, Writer& to) {
   for (const std::uint32_t v : vertices)
@@ -90,7 +93,9 @@ HomeObject::HomeObject(ObjectId object_id, const PositionsView& positions, const
   // Neighbours in space are neighbours in the order of an octree.
   const ObjectOctree octree(positions, elements, {}, BoundingVolume::aabb, SphereFit{});
   const std::span<const std::uint32_t> order = octree.triangle_ids();
-  const std::size_t count = (order.size() + cluster_triangles - 1) / cluster_triangles;
+  const std::size_t most = std::min(cluster_triangles, most_elements);
+  const std::size_t count = (order.size() + most - 1) / most;
+  clusters.reserve(count);
   constexpr std::uint32_t unplaced = ~std::uint32_t{0};
   std::vector<std::uint32_t> place_of(vertex_count_, unplaced);  // in the cluster
   for (std::size_t c = 0; c < count; ++c) {
@@ -104,12 +109,14 @@ HomeObject::HomeObject(ObjectId object_id, const PositionsView& positions, const
         if (std::exchange(place_of[v], 0) != 0) cluster.vertices.push_back(v);
       }
     }
+    cluster.vertices.shrink_to_fit();
     std::sort(cluster.vertices.begin(), cluster.vertices.end());
     for (std::uint32_t i = 0; i < cluster.vertices.size(); ++i) place_of[cluster.vertices[i]] = i;
+    cluster.elements.reserve(ids.size());
+    cluster.faces.reserve(ids.size());
     for (const std::uint32_t e : ids) {
-      Triangle corners = elements[e];
-      for (std::uint32_t& corner : corners) corner = place_of[corner];
-      cluster.elements.push_back(corners);
+      auto& corners = cluster.elements.emplace_back();
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = static_cast<std::uint16_t>(place_of[elements[e][i]]);
       if (e < face_count) cluster.faces.push_back(face_ids.empty() ? e : face_ids[e]);
     }
     for (const std::uint32_t v : cluster.vertices) place_of[v] = unplaced;
@@ -130,7 +137,7 @@ void HomeObject::set_positions(const PositionsView& positions) {
   if (options.is_static) fail("set_positions: " + options.name + " is static and cannot move");
   check_count(positions, "set_positions");
   end_.assign(positions);
-  start_.clear();
+  start_ = {};
   ++version_;
 }
 
@@ -260,17 +267,28 @@ VertexWays HomeObject::ways_of(const Cluster& cluster) const {
   return ways;
 }
 
+std::vector<std::uint32_t> HomeObject::vertices_of(const Cluster& cluster) const {
+  std::vector<std::uint32_t> vertices = cluster.vertices;
+  for (std::uint32_t& v : vertices) v = user_vertex(v);
+  return vertices;
+}
+
+std::array<std::vector<std::uint32_t>, 2> HomeObject::groups_of(const Cluster& cluster) const {
+  std::array<std::vector<std::uint32_t>, 2> found;
+  for (const std::uint32_t v : cluster.vertices) {
+    if (groups_.empty()) break;
+    found[0].push_back(groups_[v]);
+    found[1].push_back(masks_[v]);
+  }
+  return found;
+}
+
 void HomeObject::write_topology(std::uint32_t cluster, Writer& to) const {
   const Cluster& written = clusters[cluster];
   to.put_all(written.elements);
   to.put_all(written.faces);
-  to.put<std::uint64_t>(written.vertices.size());
-  for (const std::uint32_t v : written.vertices) to.put(user_vertex(v));
-  for (const auto* const numbers : {&groups_, &masks_}) {
-    to.put<std::uint64_t>(numbers->empty() ? 0 : written.vertices.size());
-    for (std::size_t i = 0; i < written.vertices.size() && !numbers->empty(); ++i)
-      to.put((*numbers)[written.vertices[i]]);
-  }
+  to.put_all(vertices_of(written));
+  for (const auto& numbers : groups_of(written)) to.put_all(numbers);
 }
 
 void HomeObject::write_positions(std::uint32_t cluster, Writer& to) const {

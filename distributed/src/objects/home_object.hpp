@@ -22,7 +22,6 @@ struct Coordinates {
   std::vector<double> doubles;
 
   void assign(const PositionsView& positions);
-  void clear() { *this = {}; }
   std::size_t size() const { return (is_double ? doubles.size() : floats.size()) / 3; }
   Vec3d operator[](std::size_t i) const {
     if (is_double) return {doubles[3 * i], doubles[3 * i + 1], doubles[3 * i + 2]};
@@ -57,14 +56,18 @@ struct SavedObject {
 SavedObject read_object(std::span<const std::span<const std::byte>> parts);
 
 /// Neighbouring triangles of an object, and edges and points of no triangle.
-struct Cluster {
-  std::vector<std::uint32_t> vertices;  ///< of the part, ascending
+struct ClusterTopology {
+  std::vector<std::uint32_t> vertices;  ///< ascending
   /// Corners as indices into `vertices`: first the faces, then other elements with repeated corners.
-  std::vector<Triangle> elements;
+  std::vector<std::array<std::uint16_t, 3>> elements;
   std::vector<std::uint32_t> faces;  ///< the user's numbers
-  Aabb box;                          ///< at the last `update_boxes`
-  bool is_finite = true;             ///< all vertices, at the last `update_boxes`
-  double work = 0;                   ///< of the last step, in triangles
+};
+
+/// The vertices are those of the part.
+struct Cluster : ClusterTopology {
+  Aabb box;               ///< at the last `update_boxes`
+  bool is_finite = true;  ///< all vertices, at the last `update_boxes`
+  double work = 0;        ///< of the last step, in triangles
 };
 
 /// An object, or a part of it, on the rank that added it.
@@ -90,6 +93,10 @@ class HomeObject {
   /// Writes all of it, for `read_object`.
   void write(Writer& to) const;
 
+  /// The user's numbers.
+  std::vector<std::uint32_t> vertices_of(const Cluster& cluster) const;
+  /// The groups and masks of its vertices; empty without groups.
+  std::array<std::vector<std::uint32_t>, 2> groups_of(const Cluster& cluster) const;
   void write_topology(std::uint32_t cluster, Writer& to) const;
   void write_positions(std::uint32_t cluster, Writer& to) const;
 
@@ -101,7 +108,8 @@ class HomeObject {
   std::uint64_t version() const { return version_; }
   /// Those of a part, ascending; empty for a whole object.
   std::span<const std::uint32_t> part_vertices() const { return vertex_ids_; }
-  Vec3d position(std::size_t vertex) const { return end_[vertex]; }
+  const Coordinates& start() const { return start_; }
+  const Coordinates& end() const { return end_; }
   std::size_t vertex_count() const { return vertex_count_; }
   std::uint32_t user_vertex(std::uint32_t v) const { return vertex_ids_.empty() ? v : vertex_ids_[v]; }
 

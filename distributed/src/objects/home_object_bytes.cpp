@@ -58,8 +58,8 @@ void HomeObject::write(Writer& to) const {
   std::vector<std::uint32_t> points;
   for (const Cluster& cluster : clusters) {
     for (std::size_t e = 0; e < cluster.elements.size(); ++e) {
-      Triangle corners = cluster.elements[e];
-      for (std::uint32_t& corner : corners) corner = user_vertex(cluster.vertices[corner]);
+      Triangle corners;
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = user_vertex(cluster.vertices[cluster.elements[e][i]]);
       if (e < cluster.faces.size()) {
         faces.push_back({cluster.faces[e], corners});
       } else if (corners[0] == corners[1]) {

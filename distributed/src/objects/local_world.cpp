@@ -77,34 +77,63 @@ void LocalWorld::begin() {
   }
 }
 
-void LocalWorld::read_cluster(const ClusterName& name, std::uint64_t version, bool has_topology,
-                              bool has_positions, Reader& from) {
+/// A cluster that is needed, without what it had if it is not known.
+LocalWorld::GuestCluster& LocalWorld::need(const ClusterName& name, std::uint64_t version, bool is_known) {
   GuestObject& object = objects_[name.object];
   object.id = name.object;
   auto cluster = std::lower_bound(object.clusters.begin(), object.clusters.end(), name,
                                   [](const GuestCluster& p, const ClusterName& q) { return p.name < q; });
-  if (has_topology) {
-    object.options = read_options(from);
-    if (cluster == object.clusters.end() || cluster->name != name)
-      cluster = object.clusters.insert(cluster, GuestCluster{});
-    *cluster = {};
-    cluster->name = name;
-    cluster->elements = from.get_all<Triangle>();
-    cluster->faces = from.get_all<std::uint32_t>();
-    cluster->vertices = from.get_all<std::uint32_t>();
-    cluster->groups = from.get_all<std::uint32_t>();
-    cluster->masks = from.get_all<std::uint32_t>();
-  }
+  if (cluster == object.clusters.end() || cluster->name != name)
+    cluster = object.clusters.insert(cluster, GuestCluster{});
+  if (!is_known) *cluster = {};
+  cluster->name = name;
   cluster->is_needed = true;
+  cluster->has_moved = cluster->version != version;
   cluster->version = version;
-  if (!has_positions) return;
-  cluster->is_double = from.get<bool>();
+  return *cluster;
+}
+
+void LocalWorld::take_own(const ClusterName& name, const HomeObject& home) {
+  const bool is_known = version_of(name).has_value();
+  GuestCluster& cluster = need(name, home.version(), is_known);
+  if (is_known) return;
+  cluster.own = &home;
+  cluster.groups = home.groups_of(home.clusters[name.cluster]);
+  ObjectOptions& options = objects_[name.object].options = home.options;
+  options.is_static = false;
+}
+
+void LocalWorld::read_cluster(const ClusterName& name, std::uint64_t version, bool has_topology,
+                              bool has_positions, Reader& from) {
+  GuestCluster& cluster = need(name, version, !has_topology);
+  if (has_topology) {
+    objects_[name.object].options = read_options(from);
+    cluster.topology.elements = from.get_all<std::array<std::uint16_t, 3>>();
+    cluster.topology.faces = from.get_all<std::uint32_t>();
+    cluster.topology.vertices = from.get_all<std::uint32_t>();
+    for (auto& numbers : cluster.groups) numbers = from.get_all<std::uint32_t>();
+  }
+  if (has_positions) read_positions(cluster, from);
+}
+
+void LocalWorld::read_positions(GuestCluster& cluster, Reader& from) {
+  cluster.is_double = from.get<bool>();
   const bool has_start = from.get<bool>();
   const auto moment = [&] {
-    return cluster->is_double ? from.bytes_of_all<double>() : from.bytes_of_all<float>();
+    return cluster.is_double ? from.bytes_of_all<double>() : from.bytes_of_all<float>();
   };
-  if (has_start) cluster->start = moment();
-  cluster->end = moment();
+  if (has_start) cluster.start = moment();
+  cluster.end = moment();
+}
+
+const ClusterTopology& LocalWorld::topology_of(const GuestCluster& cluster) {
+  return cluster.own == nullptr ? cluster.topology : cluster.own->clusters[cluster.name.cluster];
+}
+
+/// The user's numbers.
+std::vector<std::uint32_t> LocalWorld::vertices_of(const GuestCluster& cluster) {
+  if (cluster.own == nullptr) return cluster.topology.vertices;
+  return cluster.own->vertices_of(cluster.own->clusters[cluster.name.cluster]);
 }
 
 void LocalWorld::end(bool are_whole) {
@@ -150,13 +179,53 @@ void LocalWorld::number_vertices(GuestObject& object) {
   object.vertices.clear();
   object.faces.clear();
   for (const GuestCluster& cluster : object.clusters) {
-    object.vertices.insert(object.vertices.end(), cluster.vertices.begin(), cluster.vertices.end());
-    object.faces.insert(object.faces.end(), cluster.faces.begin(), cluster.faces.end());
+    const std::vector<std::uint32_t> vertices = vertices_of(cluster), &faces = topology_of(cluster).faces;
+    object.vertices.insert(object.vertices.end(), vertices.begin(), vertices.end());
+    object.faces.insert(object.faces.end(), faces.begin(), faces.end());
   }
   sort_once(object.vertices);
   std::sort(object.faces.begin(), object.faces.end());
+  object.vertices.shrink_to_fit();
+  object.faces.shrink_to_fit();
   for (GuestCluster& cluster : object.clusters)
-    cluster.local = local_numbers(cluster.vertices, object.vertices);
+    cluster.local = local_numbers(vertices_of(cluster), object.vertices);
+}
+
+/// The home on this rank that has all of the object in the same order; null when there is none.
+const HomeObject* LocalWorld::whole_home(const GuestObject& object) {
+  const HomeObject* const home = object.clusters.empty() ? nullptr : object.clusters.front().own;
+  // A home that is not needed may be gone.
+  const bool has_all =
+      home != nullptr && std::all_of(object.clusters.begin(), object.clusters.end(),
+                                     [&](const GuestCluster& c) { return c.is_needed && c.own == home; });
+  return has_all && home->vertex_count() == object.vertices.size() ? home : nullptr;
+}
+
+/// Gathers the positions of the clusters that are needed.
+void LocalWorld::gather(GuestObject& object) {
+  bool is_double = false, has_start = false;
+  for (const GuestCluster& cluster : object.clusters) {
+    if (!cluster.is_needed) continue;
+    is_double = is_double || (cluster.own != nullptr ? cluster.own->end().is_double : cluster.is_double);
+    has_start = has_start || (cluster.own != nullptr ? cluster.own->has_motion() : !cluster.start.empty());
+  }
+  clear(object.end, is_double, object.vertices.size());
+  clear(object.start, is_double, has_start ? object.vertices.size() : 0);
+  std::vector<std::byte> own;
+  for (GuestCluster& cluster : object.clusters) {
+    if (!cluster.is_needed) continue;
+    if (cluster.own != nullptr) {
+      own.clear();
+      Writer to(own);
+      cluster.own->write_positions(cluster.name.cluster, to);
+      Reader from(own);
+      read_positions(cluster, from);
+    }
+    if (has_start)
+      scatter(cluster.start.empty() ? cluster.end : cluster.start, cluster.is_double, cluster.local,
+              object.start);
+    scatter(cluster.end, cluster.is_double, cluster.local, object.end);
+  }
 }
 
 /// Moves an object to the positions of the clusters that are needed.
@@ -164,43 +233,42 @@ void LocalWorld::place(GuestObject& object) {
   bool is_new = object.slot == none, has_changed = is_new;
   for (const GuestCluster& cluster : object.clusters) {
     is_new = is_new || cluster.is_new;
-    has_changed = has_changed || is_new || !cluster.end.empty() || cluster.is_needed != cluster.was_needed;
+    has_changed = has_changed || is_new || cluster.has_moved || cluster.is_needed != cluster.was_needed;
   }
   if (!has_changed) return;
-  bool is_double = false, has_start = false;
   for (GuestCluster& cluster : object.clusters) {
     if (!cluster.is_needed) {
       cluster.version = 0;
-      continue;
+    } else if (cluster.own == nullptr && cluster.end.empty() && !cluster.local.empty()) {
+      fetch(object, cluster);
     }
-    if (cluster.end.empty() && !cluster.vertices.empty()) fetch(object, cluster);
-    is_double = is_double || cluster.is_double;
-    has_start = has_start || !cluster.start.empty();
   }
   if (is_new) number_vertices(object);
-  clear(end_, is_double, object.vertices.size());
-  if (has_start) clear(start_, is_double, object.vertices.size());
+  const HomeObject* const whole = whole_home(object);
+  if (whole != nullptr) {
+    object.start = object.end = {};
+  } else {
+    gather(object);
+  }
+  const Coordinates &start = whole != nullptr ? whole->start() : object.start,
+                    &end = whole != nullptr ? whole->end() : object.end;
   for (GuestCluster& cluster : object.clusters) {
-    cluster.is_new = false;
-    if (!cluster.is_needed) continue;
-    if (has_start)
-      scatter(cluster.start.empty() ? cluster.end : cluster.start, cluster.is_double, cluster.local, start_);
-    scatter(cluster.end, cluster.is_double, cluster.local, end_);
+    cluster.is_new = cluster.has_moved = false;
     cluster.start = cluster.end = {};
     cluster.kept = {};
   }
   if (is_new) {
     if (object.slot != none) world_.remove(world_.id_of(object.slot));
-    object.slot = add(object, end_.view()).index;
+    object.slot = add(object, end.view()).index;
     object.is_checked = false;
     is_arranged_ = false;
-    if (!has_start) return;
   }
   const ObjectId local = world_.id_of(object.slot);
-  if (has_start) {
-    world_.set_motion(local, start_.view(), end_.view());
+  if (start.size() != 0) {
+    world_.set_motion(local, start.view(), end.view());
+    object.start = object.end = {};
   } else {
-    world_.set_positions(local, end_.view());
+    world_.share_positions(local, end.view());
   }
 }
 
@@ -229,13 +297,15 @@ void LocalWorld::fetch(const GuestObject& object, GuestCluster& cluster) const {
 ObjectId LocalWorld::add(GuestObject& object, const PositionsView& positions) {
   ObjectOptions options = object.options;
   options.solid = false;  // until `make_solid`
-  std::vector<std::pair<std::uint32_t, Triangle>> numbered;
+  std::vector<Triangle> faces(object.faces.size());
   for (const GuestCluster& cluster : object.clusters) {
-    for (std::size_t e = 0; e < cluster.elements.size(); ++e) {
-      Triangle corners = cluster.elements[e];
-      for (std::uint32_t& corner : corners) corner = cluster.local[corner];
-      if (e < cluster.faces.size()) {
-        numbered.push_back({cluster.faces[e], corners});
+    const ClusterTopology& topology = topology_of(cluster);
+    const std::vector<std::uint32_t> places = local_numbers(topology.faces, object.faces);
+    for (std::size_t e = 0; e < topology.elements.size(); ++e) {
+      Triangle corners;
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = cluster.local[topology.elements[e][i]];
+      if (e < places.size()) {
+        faces[places[e]] = corners;
       } else if (corners[0] == corners[1]) {
         options.points.push_back(corners[0]);
       } else {
@@ -243,18 +313,14 @@ ObjectId LocalWorld::add(GuestObject& object, const PositionsView& positions) {
       }
     }
   }
-  std::sort(numbered.begin(), numbered.end());
-  std::vector<Triangle> faces;
-  faces.reserve(numbered.size());
-  for (const auto& [number, corners] : numbered) faces.push_back(corners);
   const ObjectId local = world_.add(positions, faces, options, "");
   if (std::any_of(object.clusters.begin(), object.clusters.end(),
-                  [](const GuestCluster& cluster) { return !cluster.groups.empty(); })) {
+                  [](const GuestCluster& cluster) { return !cluster.groups[0].empty(); })) {
     std::vector<std::uint32_t> groups(object.vertices.size(), ~std::uint32_t{0}), masks = groups;
     for (const GuestCluster& cluster : object.clusters) {
-      for (std::size_t i = 0; i < cluster.groups.size(); ++i) {
-        groups[cluster.local[i]] = cluster.groups[i];
-        masks[cluster.local[i]] = cluster.masks[i];
+      for (std::size_t i = 0; i < cluster.groups[0].size(); ++i) {
+        groups[cluster.local[i]] = cluster.groups[0][i];
+        masks[cluster.local[i]] = cluster.groups[1][i];
       }
     }
     world_.set_vertex_groups(local, groups, masks);
@@ -289,7 +355,7 @@ std::uint64_t LocalWorld::needed_triangles() const {
   std::uint64_t count = 0;
   for (const auto& [id, object] : objects_) {
     for (const GuestCluster& cluster : object.clusters)
-      count += cluster.is_needed ? cluster.elements.size() : 0;
+      count += cluster.is_needed ? topology_of(cluster).elements.size() : 0;
   }
   return count;
 }

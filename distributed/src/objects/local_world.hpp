@@ -46,6 +46,8 @@ class LocalWorld final : public Numbers {
   }
   /// Starts a step, in which no cluster is needed yet.
   void begin();
+  /// Needs a cluster of this rank. Its home must not move while the cluster is needed.
+  void take_own(const ClusterName& name, const HomeObject& home);
   /// Reads a cluster that is needed, with what `HomeObject` wrote of it.
   void read_cluster(const ClusterName& name, std::uint64_t version, bool has_topology, bool has_positions,
                     Reader& from);
@@ -75,12 +77,12 @@ class LocalWorld final : public Numbers {
  private:
   struct GuestCluster {
     ClusterName name;
-    std::vector<Triangle> elements;              ///< corners as indices into `vertices`
-    std::vector<std::uint32_t> faces, vertices;  ///< the user's numbers
-    std::vector<std::uint32_t> groups, masks;    ///< of the vertices; empty without groups
-    std::vector<std::uint32_t> local;            ///< the vertices in the object of the world
+    const HomeObject* own = nullptr;  ///< the home on this rank, which has topology and positions
+    ClusterTopology topology;         ///< the user's numbers
+    std::array<std::vector<std::uint32_t>, 2> groups;  ///< and masks of the vertices; empty without groups
+    std::vector<std::uint32_t> local;                  ///< the vertices in the object of the world
     std::uint64_t version = 0;
-    bool is_needed = false, was_needed = false, is_new = true;
+    bool is_needed = false, was_needed = false, is_new = true, has_moved = false;
     // Until the object is placed: x y z in the message, or what the cluster keeps of the last step.
     bool is_double = true;
     std::span<const std::byte> start, end;
@@ -91,12 +93,19 @@ class LocalWorld final : public Numbers {
     ObjectOptions options;
     std::vector<GuestCluster> clusters;
     std::vector<std::uint32_t> vertices, faces;  ///< the user's numbers, ascending
+    Coordinates start, end;                      ///< which the world reads, unless a home has them
     std::uint32_t slot = none;
     std::uint32_t unused_steps = 0;
     bool is_checked = false;  ///< whether it is a solid
   };
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 
+  static void read_positions(GuestCluster& cluster, Reader& from);
+  GuestCluster& need(const ClusterName& name, std::uint64_t version, bool is_known);
+  static const ClusterTopology& topology_of(const GuestCluster& cluster);
+  static std::vector<std::uint32_t> vertices_of(const GuestCluster& cluster);
+  static const HomeObject* whole_home(const GuestObject& object);
+  void gather(GuestObject& object);
   void place(GuestObject& object);
   void fetch(const GuestObject& object, GuestCluster& cluster) const;
   void make_solid(GuestObject& object, bool is_whole);
@@ -109,7 +118,6 @@ class LocalWorld final : public Numbers {
   std::map<ObjectId, GuestObject> objects_;
   std::vector<const GuestObject*> by_slot_;
   bool is_arranged_ = true;
-  Coordinates start_, end_;  // scratch memory
 };
 
 }  // namespace supple
