@@ -162,7 +162,7 @@ void expect_same_queries(const Scene& edited, const Scene& fresh, RandomNumbers&
 
 TEST(Edit, AnswersAreThoseOfAFreshScene) {
 #ifdef NDEBUG
-  constexpr int lives = 40;
+  constexpr int lives = 24;
 #else
   constexpr int lives = 4;
 #endif
