@@ -90,7 +90,7 @@ class ObjectOctree {
 
   /// Computes all volumes bottom-up in O(n); spheres fitted to vertices take O(n · levels). `inert` has a
   /// byte per triangle in octree order, not 0 for triangles to leave out, or is empty. Returns false when it
-  /// is empty and a vertex is not finite; then the volumes are invalid.
+  /// is empty and a vertex of a triangle is not finite; then the volumes are invalid.
   bool refit(const VertexBuffer& vertices, std::span<const std::uint8_t> inert, const Parallel& parallel);
 
   /// As `refit` without inert triangles, when only the vertices `moved` have changed since the last refit,
