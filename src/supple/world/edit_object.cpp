@@ -47,9 +47,8 @@ void remove_triangles(const WorldObject& object, std::span<const std::uint32_t> 
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
     fail("edit: " + object.options.name + ": triangle " + std::to_string(*twice) + " is removed twice");
-  const auto middle = static_cast<std::ptrdiff_t>(all.size());
   all.insert(all.end(), sorted.begin(), sorted.end());
-  std::inplace_merge(all.begin(), all.begin() + middle, all.end());
+  std::sort(all.begin(), all.end());
 }
 
 /// The edges and points after the edit.
