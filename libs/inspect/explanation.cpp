@@ -329,9 +329,9 @@ PairExplanation explain_in_order(const World& world, const Detection& detection,
 PairExplanation SceneInspector::explain(ObjectId id_a, std::uint32_t triangle_a, ObjectId id_b,
                                         std::uint32_t triangle_b) const {
   const World& world = SceneAccess::of(*scene_).world;
-  const TrianglePair triangles{octree_triangle(world.object(id_a, "explain"), triangle_a),
-                               octree_triangle(world.object(id_b, "explain"), triangle_b)};
-  const auto& inside = detected(*scene_, "explain");
+  const WorldObject &a = world.object(id_a, "explain"), &b = world.object(id_b, "explain");
+  const auto& inside = detected(*scene_, "explain");  // the octrees have all edits from here on
+  const TrianglePair triangles{octree_triangle(a, triangle_a), octree_triangle(b, triangle_b)};
   const auto in_order = [&](const ContactJob& job, const TrianglePair& ordered) {
     return explain_in_order(world, inside.detection, inside.result, job, ordered);
   };

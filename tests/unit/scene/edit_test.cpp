@@ -49,6 +49,16 @@ struct EditedMesh {
     const ObjectId added = scene.add(fresh, options);
     if (!from.empty()) scene.set_motion(added, starts, fresh.positions);
   }
+
+  /// Edits the object in the scene, and this mesh alike.
+  void edit(Scene& scene, const Ids& gone, const std::vector<Triangle>& added,
+            const std::vector<Vec3d>& vertices, const std::vector<Vec3d>& starts) {
+    scene.edit(id, {.removed = gone, .added = added, .new_vertices = vertices, .new_starts = starts});
+    removed.insert(removed.end(), gone.begin(), gone.end());
+    mesh.positions.insert(mesh.positions.end(), vertices.begin(), vertices.end());
+    mesh.triangles.insert(mesh.triangles.end(), added.begin(), added.end());
+    from.insert(from.end(), starts.begin(), starts.end());
+  }
 };
 
 /// A patch around a triangle is removed, and some triangles of it come back or change their corners.
@@ -77,11 +87,7 @@ void cut(EditedMesh& object, Scene& scene, RandomNumbers& random) {
     const auto corner = [&] { return corners[random.below(static_cast<std::uint32_t>(corners.size()))]; };
     added.push_back({corner(), corner(), corner()});
   }
-  scene.edit(object.id, {.removed = removed, .added = added, .new_vertices = vertices, .new_starts = starts});
-  object.removed.insert(object.removed.end(), removed.begin(), removed.end());
-  mesh.positions.insert(mesh.positions.end(), vertices.begin(), vertices.end());
-  mesh.triangles.insert(mesh.triangles.end(), added.begin(), added.end());
-  object.from.insert(object.from.end(), starts.begin(), starts.end());
+  object.edit(scene, removed, added, vertices, starts);
 }
 
 /// Some triangles become three around a new vertex, so a closed surface stays closed.
@@ -99,11 +105,7 @@ void split(EditedMesh& object, Scene& scene, RandomNumbers& random) {
     const auto [p, q, r] = mesh.triangles[t];
     added.insert(added.end(), {{p, q, v}, {q, r, v}, {r, p, v}});
   }
-  scene.edit(object.id, {.removed = removed, .added = added, .new_vertices = vertices, .new_starts = starts});
-  object.removed.insert(object.removed.end(), removed.begin(), removed.end());
-  mesh.positions.insert(mesh.positions.end(), vertices.begin(), vertices.end());
-  mesh.triangles.insert(mesh.triangles.end(), added.begin(), added.end());
-  object.from.insert(object.from.end(), starts.begin(), starts.end());
+  object.edit(scene, removed, added, vertices, starts);
 }
 
 void move(EditedMesh& object, Scene& scene, RandomNumbers& random) {
@@ -259,6 +261,7 @@ TEST(Edit, KeepsWhatBelongsToTheObject) {
   scene.edit(a, {.added = std::vector{ball.triangles[3], ball.triangles[4]}});
   EXPECT_TRUE(scene.options(a).solid);
   EXPECT_EQ(scene.triangle(a, 321), ball.triangles[4]);
+  EXPECT_THROW(SceneInspector(scene).explain(a, 321, b, 0), Error) << "no call has searched the edited mesh";
   scene.detect();
   EXPECT_TRUE(verify(scene).agrees());
   EXPECT_FALSE(scene.result().penetrations.empty());
