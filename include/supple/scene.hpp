@@ -108,10 +108,10 @@ class Scene {
   void remove(ObjectId object);
 
   /// Changes the mesh of an object: removes and adds triangles, and adds vertices. Its id, options, events,
-  /// manifolds, groups and user data stay; new vertices are in all groups. O(k log m) for k triangles and
-  /// vertices and m of edits since the last search. The next search builds the parts of the octree around
-  /// them again, O(k log n) and a copy of its arrays; with edges and points of no triangle, and with methods
-  /// of comparison, it builds the whole octree.
+  /// manifolds, groups and user data stay; new vertices are in all groups. O(m log m) for m triangles and
+  /// vertices of all edits since the last search, so search between many edits. The next search builds the
+  /// parts of the octree around them again, O(k log n) and a copy of its arrays; with edges and points of no
+  /// triangle, and with methods of comparison, it builds the whole octree.
   ///
   /// All answers are those of a scene to which the edited mesh was added, with the same ids. A pair of
   /// objects that touches before and after an edit stays. On a path, a new triangle moves as its vertices do,
@@ -124,7 +124,7 @@ class Scene {
   /// that of the new vertices on a path and 0 at rest, and when the object is static or shares its positions.
   void edit(ObjectId object, const MeshEdit& edit);
   /// Renumbers the triangles that are left after edits from 0, in their order, and frees memory. Returns the
-  /// new number of each id, or 2^32 - 1 for those that were removed. Vertices keep their numbers. O(n log n).
+  /// new number of each id, or 2^32 - 1 for a removed one; the last result keeps the old ones. O(n log n).
   std::vector<std::uint32_t> compact(ObjectId object);
   /// Sets the positions of all vertices, in the user's numbering. Copies them, O(n). Replaces earlier
   /// transforms, translations and paths. Throws `Error` when the number of positions differs from the mesh.
